@@ -152,7 +152,7 @@ static void print_json(const struct vg_check_surface *a,
     a->against ? vg_report_distances_json(a->against, f->off) : json_null());
 
   *a->written = 1;
-  if (st < 0) vg_cli_put_error(o, err);
+  if (st < 0) vg_report_error_json(o, err);
   json_object_set_new(o, "patches", vg_report_patches_json(&b->surface));
   json_object_set_new(o, "size", vg_report_size_json(&b->surface));
   json_dumpf(o, stdout, JSON_INDENT(2));

@@ -149,7 +149,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                           vg_report_patches_json(m), "mesh",
                           vg_report_mesh_json(&r, m));
 
-    if (!r.is_valid) vg_cli_put_error(o, err);
+    if (!r.is_valid) vg_report_error_json(o, err);
     print_json(o, a);
   } else {
     printf("%s: volume mesh\n", a->one.file);
@@ -220,7 +220,7 @@ static void print_failure(const struct arguments *a, const struct vg_error *err)
   json_t *o = json_pack("{s:s s:o s:b}", "vanguard", VG_VERSION, "file",
                         vg_text_json(a->one.file), "ok", 0);
 
-  vg_cli_put_error(o, err);
+  vg_report_error_json(o, err);
   print_json(o, a);
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/helper/helper.h"
 #include "base/version.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/mesh_log.h"
@@ -22,6 +21,7 @@
 #include "run/input/layers.h"
 #include "run/report/report.h"
 #include "run/stages/output.h"
+#include "run/stages/report_run.h"
 #include "run/stages/run.h"
 
 struct arguments {
@@ -40,10 +40,7 @@ struct run {
   struct vg_display show;
   struct vg_layer_stage layers;
   struct vg_run mesh;
-  double start, time_read, time_check, time_write, time_digest, time_page;
-  /* Seconds from the start to the printed report. The terminal and the log
-   * print the same value. */
-  double time_total;
+  struct vg_run_times time;
 };
 
 /* Options that are not settings: they do not change the mesh. */
@@ -171,7 +168,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
 
   VG_TRY(vg_comm_agree(comm, read_settings(r, a, err), err));
   st = vg_problem_read(&r->problem, comm, &r->show, err);
-  r->time_read = vg_display_now() - t;
+  r->time.read = vg_display_now() - t;
 done:
   return st;
 }
@@ -183,7 +180,7 @@ static vg_status close_surface(struct run *r, struct vg_error *err)
   vg_status st;
 
   VG_TRY(vg_run_surface(m, &r->problem, &r->layers, &r->show, err));
-  r->time_check = vg_display_now() - t;
+  r->time.check = vg_display_now() - t;
   st = vg_outputs_check(&r->problem, &r->outputs, err);
   if (st >= 0) st = vg_display_stopped(&r->show, err);
   st = vg_comm_agree(m->comm, st, err);
@@ -191,100 +188,32 @@ done:
   return st;
 }
 
-static json_t *files_json(const struct run *r)
+static struct vg_run_report report_of(const struct run *r)
 {
-  json_t *list = json_array();
-
-  for (size_t i = 0; i < r->outputs.n_file; i++) {
-    const struct vg_outputs_file *f = &r->outputs.file[i];
-    char *path = vg_outputs_final(&r->outputs, f->suffix), digest[36];
-    json_t *one = json_object();
-
-    json_object_set_new(one, "path", vg_text_json(path ? path : ""));
-    if (f->digest[0] || f->digest[1]) {
-      snprintf(digest, sizeof digest, "%016llx%016llx",
-               (unsigned long long)f->digest[0],
-               (unsigned long long)f->digest[1]);
-      json_object_set_new(one, "bytes", json_integer((json_int_t)f->bytes));
-      json_object_set_new(one, "xxh3", json_string(digest));
-    }
-    json_array_append_new(list, one);
-    free(path);
-  }
-  return list;
-}
-
-/* Identity of each helper program, or null. */
-static json_t *helpers_json(void)
-{
-  json_t *o = json_object();
-  struct vg_helper h;
-
-  for (int kind = 0; kind < VG_HELPER_N; kind++) {
-    vg_helper_find((enum vg_helper_kind)kind, &h);
-    json_object_set_new(o, h.name,
-                        h.is_found ? json_string(h.identity) : json_null());
-  }
-  return o;
+  return (struct vg_run_report){ &r->problem, &r->layers, &r->mesh,
+                                 &r->outputs, 1,          r->time };
 }
 
 static json_t *report_json(const struct run *r, int ok,
                            const struct vg_error *err)
 {
-  const struct vg_problem *p = &r->problem;
-  const struct vg_boundary *b = &p->boundary;
-  const struct vg_mesh *m = vg_problem_surface(p);
-  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &b->surface);
-  json_t *o = json_object();
+  const struct vg_run_report report = report_of(r);
 
-  json_object_set_new(o, "vanguard", json_string(VG_VERSION));
-  json_object_set_new(o, "source", json_string(vg_source_digest));
-  json_object_set_new(o, "helpers", helpers_json());
-  json_object_set_new(o, "title", vg_text_json(p->asked.title));
-  json_object_set_new(o, "ok", json_boolean(ok));
-  if (!ok) vg_cli_put_error(o, err);
-  json_object_set_new(o, "flow",
-                      vg_report_flow_json(&b->flow, b->domain.added_farfield));
-  json_object_set_new(o, "input", vg_report_size_json(m));
-  json_object_set_new(o, "patches", vg_report_patches_json(m));
-  json_object_set_new(o, "surface",
-                      vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
-  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
-  json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
-  json_object_set_new(o, "notes", vg_report_notes_json(&p->notes));
-  if (ok) {
-    json_object_set_new(o, "sources",
-                        vg_effects_json(&r->mesh.effects, &front,
-                                        &p->resolved.settings));
-    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge, m));
-    json_object_set_new(o, "fill",
-                        vg_report_fill_json(&r->mesh.partition.fill,
-                                            r->mesh.n_field_cell));
-    json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
-    json_object_set_new(o, "memory_bytes", vg_report_memory_json(&r->mesh));
-    if (r->layers.is_on) {
-      json_object_set_new(o, "field",
-                          vg_report_mesh_json(&r->mesh.field_judge, m));
-      json_object_set_new(o, "layers", vg_report_layers_json(&r->layers, m));
-    }
-    if (r->mesh.parts)
-      json_object_set_new(o, "solver_parts",
-                          vg_report_solver_json(&r->mesh.solver));
-    json_object_set_new(o, "files", files_json(r));
-  }
-  json_object_set_new(
-    o, "seconds",
-    json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "read",
-              r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
-              "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
-              "number", r->mesh.partition.number, "judge", r->mesh.time_judge,
-              "parts", r->mesh.time_parts, "write", r->time_write, "digest",
-              r->time_digest, "pictures", r->mesh.pictures.time + r->time_page,
-              "total", vg_display_now() - r->start));
-  json_object_set_new(o, "peak_memory_bytes",
-                      json_real(r->mesh.memory > 0 ? r->mesh.memory
-                                                   : vg_report_peak_memory()));
-  return o;
+  return vg_run_report_json(&report, ok, err);
+}
+
+static void print_surface(FILE *to, const struct run *r)
+{
+  const struct vg_run_report report = report_of(r);
+
+  vg_run_report_surface_text(to, &report);
+}
+
+static void print_report(FILE *to, const struct run *r)
+{
+  const struct vg_run_report report = report_of(r);
+
+  vg_run_report_text(to, &report);
 }
 
 /* The timeline of the run; spans are borrowed. */
@@ -293,16 +222,17 @@ static struct vg_timeline timeline_of(const struct run *r)
   struct vg_timeline t = VG_TIMELINE_INIT;
 
   snprintf(t.title, sizeof t.title, "%s", r->problem.asked.title);
-  t.seconds[VG_PHASE_READ] = r->time_read;
-  t.seconds[VG_PHASE_CHECK] = r->time_check;
+  t.seconds[VG_PHASE_READ] = r->time.read;
+  t.seconds[VG_PHASE_CHECK] = r->time.check;
   t.seconds[VG_PHASE_SIZES] = r->mesh.time_size;
   t.seconds[VG_PHASE_LAYERS] = r->mesh.time_layers;
   t.seconds[VG_PHASE_ENGINE] = r->mesh.spans.wall;
   t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
   t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
-  t.seconds[VG_PHASE_WRITE] = r->time_write + r->time_digest;
+  t.seconds[VG_PHASE_WRITE] = r->time.write + r->time.digest;
   /* Work done only for the timeline is excluded. */
-  t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start - r->mesh.time_near;
+  t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->time.start -
+                              r->mesh.time_near;
   t.n_cell = vg_run_cells(&r->mesh);
   t.n_point = r->mesh.slices.n_point;
   t.cyclic = r->problem.asked.cyclic;
@@ -354,7 +284,7 @@ done:
   json_decref(report);
   free(path);
   free(svg);
-  r->time_page = vg_display_now() - start;
+  r->time.page = vg_display_now() - start;
   return st;
 }
 
@@ -369,7 +299,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
   vg_status st;
 
   VG_TRY(vg_outputs_digest(&r->outputs, err));
-  r->time_digest = vg_display_now() - t;
+  r->time.digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
   if (r->problem.asked.report_html)
     VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
@@ -399,101 +329,12 @@ static vg_status write_all(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "write", vg_run_cells(m), 0);
   VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, m->comm,
                          vg_run_slices(m), m->threads, err));
-  r->time_write = vg_display_now() - t + m->time_put;
+  r->time.write = vg_display_now() - t + m->time_put;
   VG_TRY(vg_run_memory(m, err));
   st = m->rank ? VG_OK : finish(r, a, err);
   st = vg_comm_agree(m->comm, st, err);
 done:
   return st;
-}
-
-static void print_surface(FILE *to, const struct run *r)
-{
-  const struct vg_problem *p = &r->problem;
-  const struct vg_boundary *b = &p->boundary;
-  const struct vg_mesh *m = vg_problem_surface(p);
-
-  fprintf(to, "%s\n\n", p->asked.title);
-  vg_report_flow_text(to, &b->flow, b->domain.added_farfield);
-  for (size_t i = 0; i < p->notes.n; i++)
-    fprintf(to, "  note: %s\n", p->notes.text[i]);
-  fprintf(to, "\nSurface\n");
-  vg_report_size_text(to, m);
-  if (b->n_welded || b->n_dropped)
-    fprintf(to, "  welded: %zu points merged, %zu triangles removed\n",
-            b->n_welded, b->n_dropped);
-  vg_report_remesh_text(to, &b->remeshing);
-  vg_report_domain_text(to, &b->domain);
-  vg_report_surface_text(to, m, &b->check, vg_boundary_is_stretched(b),
-                         VG_SHOWN_DEFECTS);
-}
-
-static void print_count(FILE *to, const char *name, size_t n)
-{
-  char count[32];
-
-  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
-}
-
-static void print_times(FILE *to, const struct run *r)
-{
-  fprintf(to,
-          "\nTime (s)\n  read %.2f, surface check %.2f, sizing field %.2f, ",
-          r->time_read, r->time_check, r->mesh.time_size);
-  if (r->layers.is_on) fprintf(to, "layers %.2f, ", r->mesh.time_layers);
-  fprintf(to, "fill %.2f, numbering %.2f,\n  mesh check %.2f, ",
-          r->mesh.time_fill, r->mesh.partition.number, r->mesh.time_judge);
-  if (r->mesh.parts) fprintf(to, "solver partition %.2f, ", r->mesh.time_parts);
-  fprintf(to, "write %.2f, total %.2f\n", r->time_write, r->time_total);
-  vg_report_memory_text(to, &r->mesh);
-}
-
-static void print_files(FILE *to, const struct run *r)
-{
-  fprintf(to, "\nFiles\n");
-  for (size_t i = 0; i < r->outputs.n_file; i++) {
-    char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
-
-    fprintf(to, "  %s%s\n", path ? path : "",
-            r->outputs.file[i].keep_old ? "  (input, kept)" : "");
-    free(path);
-  }
-}
-
-static void print_report(FILE *to, const struct run *r)
-{
-  const struct vg_run *m = &r->mesh;
-
-  print_surface(to, r);
-  if (r->layers.is_on) {
-    fprintf(to, "\nBoundary layers\n");
-    vg_report_layers_text(to, &r->layers, &r->problem.boundary.surface);
-  }
-  fprintf(to, "\nDomain decomposition\n");
-  vg_report_partition_text(to, m);
-  fprintf(to, "\nVolume fill\n");
-  vg_report_fill_text(to, &m->partition.fill, m->n_field_cell);
-  if (r->layers.is_on) {
-    fprintf(to, "\n"
-                "Cells outside the layers\n");
-    print_count(to, "tetrahedra", m->n_field_cell);
-    vg_report_mesh_text(to, &m->field_judge, 0);
-  }
-  fprintf(to, "\nVolume mesh\n");
-  print_count(to, "points", m->slices.n_point);
-  print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
-  if (m->slices.n_cell[VG_SLICE_PYR])
-    print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
-  if (m->slices.n_cell[VG_SLICE_PRI])
-    print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
-  if (r->layers.is_on) vg_report_whole_text(to, &m->judge);
-  else vg_report_mesh_text(to, &m->judge, 0);
-  if (m->parts) {
-    fprintf(to, "\nSolver partition\n");
-    vg_report_solver_text(to, &m->solver);
-  }
-  print_times(to, r);
-  print_files(to, r);
 }
 
 /* Write all faces with a defect to STEM.defects.vtu. */
@@ -560,7 +401,7 @@ static int report_success(struct run *r, const struct arguments *a)
   int status = VG_EXIT_DONE;
 
   if (r->mesh.rank) return status;
-  r->time_total = vg_display_now() - r->start;
+  r->time.total = vg_display_now() - r->time.start;
   if (a->json) status = print_json(r, 1, NULL);
   else print_report(stdout, r);
   if (vg_log()) print_report(vg_log(), r);
@@ -590,7 +431,7 @@ static int close_log(const struct run *r, int status)
 
   if (vg_log())
     fprintf(vg_log(), "\nexit status %d after %.2f s\n", status,
-            vg_display_now() - r->start);
+            vg_display_now() - r->time.start);
   return vg_log_close(&err) < 0 ? vg_cli_fail(&err) : status;
 }
 
@@ -600,7 +441,7 @@ static int run(const struct arguments *a)
   struct vg_error err = VG_ERROR_INIT;
   int status;
 
-  r.start = vg_display_now();
+  r.time.start = vg_display_now();
   if (vg_comm_open(&r.mesh.comm, &err) < 0) return vg_cli_fail(&err);
   if (a->run.node_ranks &&
       vg_comm_take_for_nodes(r.mesh.comm, (int)a->run.node_ranks, &err) < 0)

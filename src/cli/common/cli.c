@@ -18,10 +18,3 @@ int vg_cli_fail(const struct vg_error *err)
   if (vg_log()) fprintf(vg_log(), "vanguard: %s\n", err->text);
   return vg_cli_exit(err);
 }
-
-void vg_cli_put_error(json_t *report, const struct vg_error *err)
-{
-  json_object_set_new(report, "error", vg_text_json(err->text));
-  json_object_set_new(report, "error_kind",
-                      json_string(vg_status_name(err->code)));
-}

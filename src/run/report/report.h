@@ -21,6 +21,10 @@
 #define VG_SHOWN_ITEMS 20    /* shells, or patch numbers, listed in the text */
 #define VG_SHOWN_FACES 3     /* poor triangles listed in the text */
 
+/** Add a failure to a report: `error`, its message, and `error_kind`, the name
+ * of its code (vg_status_name). */
+void vg_report_error_json(json_t *report, const struct vg_error *err);
+
 /** The notes of a run, as a list of texts. */
 json_t *vg_report_notes_json(const struct vg_notes *notes);
 

@@ -39,6 +39,13 @@ void vg_report_size_text(FILE *to, const struct vg_mesh *m)
           lo[2], hi[0], hi[1], hi[2]);
 }
 
+void vg_report_error_json(json_t *report, const struct vg_error *err)
+{
+  json_object_set_new(report, "error", vg_text_json(err->text));
+  json_object_set_new(report, "error_kind",
+                      json_string(vg_status_name(err->code)));
+}
+
 json_t *vg_report_notes_json(const struct vg_notes *notes)
 {
   json_t *list = json_array();

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "run/stages/report_run.h"
+
+#include <stdlib.h>
+
+#include "base/helper/helper.h"
+#include "base/version.h"
+#include "run/common/text.h"
+#include "run/report/report.h"
+
+static json_t *files_json(const struct vg_run_report *r)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < r->outputs->n_file; i++) {
+    const struct vg_outputs_file *f = &r->outputs->file[i];
+    char *path = vg_outputs_final(r->outputs, f->suffix), digest[36];
+    json_t *one = json_object();
+
+    json_object_set_new(one, "path", vg_text_json(path ? path : ""));
+    if (f->digest[0] || f->digest[1]) {
+      snprintf(digest, sizeof digest, "%016llx%016llx",
+               (unsigned long long)f->digest[0],
+               (unsigned long long)f->digest[1]);
+      json_object_set_new(one, "bytes", json_integer((json_int_t)f->bytes));
+      json_object_set_new(one, "xxh3", json_string(digest));
+    }
+    json_array_append_new(list, one);
+    free(path);
+  }
+  return list;
+}
+
+/* Identity of each helper program, or null. */
+static json_t *helpers_json(void)
+{
+  json_t *o = json_object();
+  struct vg_helper h;
+
+  for (int kind = 0; kind < VG_HELPER_N; kind++) {
+    vg_helper_find((enum vg_helper_kind)kind, &h);
+    json_object_set_new(o, h.name,
+                        h.is_found ? json_string(h.identity) : json_null());
+  }
+  return o;
+}
+
+static void put_mesh(json_t *o, const struct vg_run_report *r)
+{
+  const struct vg_problem *p = r->problem;
+  const struct vg_mesh *m = vg_problem_surface(p);
+  const struct vg_mesh front = vg_layer_stage_front(r->layers,
+                                                    &p->boundary.surface);
+
+  json_object_set_new(o, "sources",
+                      vg_effects_json(&r->run->effects, &front,
+                                      &p->resolved.settings));
+  json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
+  json_object_set_new(o, "fill",
+                      vg_report_fill_json(&r->run->partition.fill,
+                                          r->run->n_field_cell));
+  json_object_set_new(o, "partition", vg_report_partition_json(r->run));
+  json_object_set_new(o, "memory_bytes", vg_report_memory_json(r->run));
+  if (r->layers->is_on) {
+    json_object_set_new(o, "field",
+                        vg_report_mesh_json(&r->run->field_judge, m));
+    json_object_set_new(o, "layers", vg_report_layers_json(r->layers, m));
+  }
+  if (r->run->parts)
+    json_object_set_new(o, "solver_parts",
+                        vg_report_solver_json(&r->run->solver));
+}
+
+json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
+                           const struct vg_error *err)
+{
+  const struct vg_problem *p = r->problem;
+  const struct vg_boundary *b = &p->boundary;
+  const struct vg_mesh *m = vg_problem_surface(p);
+  json_t *o = json_object();
+
+  json_object_set_new(o, "vanguard", json_string(VG_VERSION));
+  json_object_set_new(o, "source", json_string(vg_source_digest));
+  json_object_set_new(o, "helpers", helpers_json());
+  json_object_set_new(o, "title", vg_text_json(p->asked.title));
+  json_object_set_new(o, "ok", json_boolean(ok));
+  if (!ok) vg_report_error_json(o, err);
+  json_object_set_new(o, "flow",
+                      vg_report_flow_json(&b->flow, b->domain.added_farfield));
+  json_object_set_new(o, "input", vg_report_size_json(m));
+  json_object_set_new(o, "patches", vg_report_patches_json(m));
+  json_object_set_new(o, "surface",
+                      vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
+  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
+  json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
+  json_object_set_new(o, "notes", vg_report_notes_json(&p->notes));
+  if (ok && r->has_mesh) put_mesh(o, r);
+  if (ok && r->outputs) json_object_set_new(o, "files", files_json(r));
+  json_object_set_new(
+    o, "seconds",
+    json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "read",
+              r->time.read, "check", r->time.check, "sizes", r->run->time_size,
+              "layers", r->run->time_layers, "fill", r->run->time_fill,
+              "number", r->run->partition.number, "judge", r->run->time_judge,
+              "parts", r->run->time_parts, "write", r->time.write, "digest",
+              r->time.digest, "pictures", r->run->pictures.time + r->time.page,
+              "total", vg_display_now() - r->time.start));
+  json_object_set_new(o, "peak_memory_bytes",
+                      json_real(r->run->memory > 0 ? r->run->memory
+                                                   : vg_report_peak_memory()));
+  return o;
+}
+
+void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
+{
+  const struct vg_problem *p = r->problem;
+  const struct vg_boundary *b = &p->boundary;
+  const struct vg_mesh *m = vg_problem_surface(p);
+
+  fprintf(to, "%s\n\n", p->asked.title);
+  vg_report_flow_text(to, &b->flow, b->domain.added_farfield);
+  for (size_t i = 0; i < p->notes.n; i++)
+    fprintf(to, "  note: %s\n", p->notes.text[i]);
+  fprintf(to, "\nSurface\n");
+  vg_report_size_text(to, m);
+  if (b->n_welded || b->n_dropped)
+    fprintf(to, "  welded: %zu points merged, %zu triangles removed\n",
+            b->n_welded, b->n_dropped);
+  vg_report_remesh_text(to, &b->remeshing);
+  vg_report_domain_text(to, &b->domain);
+  if (b->read)
+    vg_report_surface_text(to, m, &b->check, vg_boundary_is_stretched(b),
+                           VG_SHOWN_DEFECTS);
+}
+
+static void print_count(FILE *to, const char *name, size_t n)
+{
+  char count[32];
+
+  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
+}
+
+static void print_times(FILE *to, const struct vg_run_report *r)
+{
+  fprintf(to,
+          "\nTime (s)\n  read %.2f, surface check %.2f, sizing field %.2f, ",
+          r->time.read, r->time.check, r->run->time_size);
+  if (r->layers->is_on) fprintf(to, "layers %.2f, ", r->run->time_layers);
+  fprintf(to, "fill %.2f, numbering %.2f,\n  mesh check %.2f, ",
+          r->run->time_fill, r->run->partition.number, r->run->time_judge);
+  if (r->run->parts) fprintf(to, "solver partition %.2f, ", r->run->time_parts);
+  fprintf(to, "write %.2f, total %.2f\n", r->time.write, r->time.total);
+  vg_report_memory_text(to, r->run);
+}
+
+static void print_files(FILE *to, const struct vg_run_report *r)
+{
+  fprintf(to, "\nFiles\n");
+  for (size_t i = 0; i < r->outputs->n_file; i++) {
+    char *path = vg_outputs_final(r->outputs, r->outputs->file[i].suffix);
+
+    fprintf(to, "  %s%s\n", path ? path : "",
+            r->outputs->file[i].keep_old ? "  (input, kept)" : "");
+    free(path);
+  }
+}
+
+void vg_run_report_text(FILE *to, const struct vg_run_report *r)
+{
+  const struct vg_run *m = r->run;
+
+  vg_run_report_surface_text(to, r);
+  if (!r->has_mesh) return;
+  if (r->layers->is_on) {
+    fprintf(to, "\nBoundary layers\n");
+    vg_report_layers_text(to, r->layers, &r->problem->boundary.surface);
+  }
+  fprintf(to, "\nDomain decomposition\n");
+  vg_report_partition_text(to, m);
+  fprintf(to, "\nVolume fill\n");
+  vg_report_fill_text(to, &m->partition.fill, m->n_field_cell);
+  if (r->layers->is_on) {
+    fprintf(to, "\n"
+                "Cells outside the layers\n");
+    print_count(to, "tetrahedra", m->n_field_cell);
+    vg_report_mesh_text(to, &m->field_judge, 0);
+  }
+  fprintf(to, "\nVolume mesh\n");
+  print_count(to, "points", m->slices.n_point);
+  print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  if (m->slices.n_cell[VG_SLICE_PYR])
+    print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
+  if (m->slices.n_cell[VG_SLICE_PRI])
+    print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
+  if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
+  else vg_report_mesh_text(to, &m->judge, 0);
+  if (m->parts) {
+    fprintf(to, "\nSolver partition\n");
+    vg_report_solver_text(to, &m->solver);
+  }
+  print_times(to, r);
+  if (r->outputs) print_files(to, r);
+}
