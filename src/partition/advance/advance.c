@@ -256,6 +256,8 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (st == VG_OK) st = run_again(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
+  if (st == VG_OK)
+    st = vg_comm_agree(comm, vg_stopped(&p->options.stop, err), err);
   if (st == VG_OK) vg_partition_tell(p, "numbering", p->n_piece, 0);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   p->report.cell_bytes = (double)bytes_of_pieces(p);

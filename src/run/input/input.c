@@ -338,7 +338,8 @@ static void note_cad(void *user, const char *text)
 
 /* Boundary conditions come from the .mapbc that the settings name, or that has
  * the stem of the file. */
-static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
+static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
+                                   struct vg_error *err)
 {
   const int is_remeshed = vg_read_is_remeshed(r, &r->surface);
   struct vg_cad_options cad = vg_options_cad(&r->settings, is_remeshed);
@@ -349,12 +350,12 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   vg_status st = name_mapbc(r, err);
 
   cad.note = note_cad;
-  cad.stop.ask = vg_display_stop;
+  cad.stop = (struct vg_stop){ vg_display_stop, show };
   cad.user = r->notes;
   if (st < 0) return st;
   st = vg_surface_read(path, &r->surface, &info, err);
   /* The message of the library has less detail. */
-  if (st == VG_ERR_STOPPED) return vg_display_stopped(NULL, err);
+  if (st == VG_ERR_STOPPED) return vg_display_stopped(show, err);
   if (st < 0) return st;
   r->has_cells = info.n_cell > 0;
   r->side = side_of(info.format);
@@ -524,11 +525,12 @@ int vg_read_is_by_first(const struct vg_read *r, struct vg_comm *comm)
 
 /* st: status of this rank so far. Collective. */
 static vg_status read_for_all(struct vg_read *r, struct vg_comm *comm,
-                              vg_status st, struct vg_error *err)
+                              struct vg_display *show, vg_status st,
+                              struct vg_error *err)
 {
   VG_TRY(vg_comm_agree(comm, st, err));
   if (!vg_comm_rank(comm)) {
-    st = read_surface_file(r, err);
+    st = read_surface_file(r, show, err);
   } else {
     st = name_mapbc(r, err);
     if (st >= 0 && !*r->settings.mapbc && vg_mapbc_is_output(r->files.mapbc))
@@ -546,7 +548,7 @@ static vg_status read_surface(struct vg_read *r, struct vg_display *show,
   const struct vg_project *project = *f->d3m ? &r->project : NULL;
   vg_status st;
 
-  if (!*f->front && *f->surface) return read_surface_file(r, err);
+  if (!*f->front && *f->surface) return read_surface_file(r, show, err);
   r->side = VG_SIDE_DEFINED;
   st = *f->front ? vg_front_read(f->front, project, &r->surface, err)
                  : mesh_patches(r, show, err);
@@ -788,7 +790,7 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
   r->notes = &p->notes;
   vg_helper_set_folder(p->asked.helpers);
   st = read_asides(&p->asked, r, err);
-  if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, st, err);
+  if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, show, st, err);
   else if (st >= 0) st = read_surface(r, show, err);
   if (st >= 0) st = read_patches(r, err);
   if (st >= 0 && show) st = vg_display_stopped(show, err);

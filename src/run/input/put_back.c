@@ -202,15 +202,15 @@ static vg_status summarise(const struct samples *s, size_t end,
 /* Finds the triangle and curve of each sample. A sample farther than `limit`
  * from all triangles is not part of the model. */
 static vg_status locate(struct samples *s, const struct vg_boundary *b,
-                        double limit, struct vg_error *err)
+                        double limit, const struct vg_stop *stop,
+                        struct vg_error *err)
 {
   const struct vg_cad_surface *c = &b->model.surface;
-  const struct vg_stop stop = { vg_display_stop, NULL };
   struct segment *list = NULL;
   vg_status st;
 
   VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double(*)[3])s->x, b->threads,
-                          &stop, s->tri, s->to, err));
+                          stop, s->tri, s->to, err));
   for (size_t i = 0; i < s->n; i++)
     s->distance[i] = vg_distance(s->x[i], s->to[i]) <= limit ? 0 : INFINITY;
   VG_TRY(list_segments(c, &list, err));
@@ -282,10 +282,9 @@ static void leave_caps(struct samples *s, const struct vg_boundary *b,
 }
 
 static vg_status move(struct vg_boundary *b, struct samples *s,
-                      struct vg_put_back *back, struct vg_error *err)
+                      struct vg_put_back *back, const struct vg_stop *stop,
+                      struct vg_error *err)
 {
-  const struct vg_stop stop = { vg_display_stop, NULL };
-
   for (size_t i = 0; i < s->n_point; i++) {
     if (!(s->distance[i] < INFINITY) && !s->stays[i]) back->n_far++;
     if (s->curve[i]) back->n_curve++;
@@ -293,7 +292,7 @@ static vg_status move(struct vg_boundary *b, struct samples *s,
   }
   back->n_point = s->n_point - back->n_cap;
   return vg_remesh_put_back(&b->surface, (const double(*)[3])s->to, b->threads,
-                            &stop, s->stays, &back->n_refused, err);
+                            stop, s->stays, &back->n_refused, err);
 }
 
 /* Largest distance of the samples of each triangle that has a position. */
@@ -308,8 +307,10 @@ static void by_face(const struct samples *s, const struct vg_mesh *m,
   }
 }
 
-vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
+vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_display *show,
+                               struct vg_error *err)
 {
+  const struct vg_stop stop = { vg_display_stop, show };
   struct vg_remeshing *r = &b->remeshing;
   struct vg_put_back *back = &r->back;
   struct samples s = { 0 };
@@ -319,10 +320,10 @@ vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
   VG_TRY(start(&s, &b->surface, err));
   take_points(&s, &b->surface);
   take_centroids(&s, &b->surface);
-  VG_TRY(locate(&s, b, r->report.tolerance, err));
+  VG_TRY(locate(&s, b, r->report.tolerance, &stop, err));
   leave_caps(&s, b, back);
   VG_TRY(find_places(&s, b->model.cad, &back->off[0], err));
-  VG_TRY(move(b, &s, back, err));
+  VG_TRY(move(b, &s, back, &stop, err));
   VG_TRY(measure(&s, &b->surface, b->model.cad, &back->off[1], err));
   by_face(&s, &b->surface, r->face);
   back->seconds = vg_display_now() - t;

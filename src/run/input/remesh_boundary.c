@@ -262,7 +262,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(measure(b, &given, show, err));
   r->is_done = 1;
   vg_display_update(show, "projection", b->surface.n_tri, 0);
-  if (b->model.cad) VG_TRY(vg_boundary_put_back(b, err));
+  if (b->model.cad) VG_TRY(vg_boundary_put_back(b, show, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
   note_faults(b);
@@ -304,7 +304,7 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   vg_status st;
 
   if (i >= TRIES || !b->model.cad) return VG_BLOCKED;
-  cad.stop.ask = vg_display_stop;
+  cad.stop = (struct vg_stop){ vg_display_stop, show };
   cad.chord = fmin(cad.chord * again[i][0], 0.1);
   cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
   vg_display_update(show, "tessellation", 0, 0);

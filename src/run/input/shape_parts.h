@@ -59,7 +59,8 @@ void vg_boundary_note_slivers(struct vg_boundary *b);
 /** Projects the points of a remeshed surface onto b->model unless triangles
  * would fold or intersect; measures distances and adds notes. VG_ERR_GEOMETRY
  * if Open CASCADE fails. */
-vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err);
+vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_display *show,
+                               struct vg_error *err);
 
 void vg_remeshing_release(struct vg_remeshing *r);
 

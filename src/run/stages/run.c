@@ -329,6 +329,13 @@ done:
   return st;
 }
 
+/* Stops between two steps that do not poll. Collective. */
+static vg_status stop_here(const struct vg_run *r, struct vg_display *show,
+                           struct vg_error *err)
+{
+  return vg_comm_agree(r->comm, vg_display_stopped(show, err), err);
+}
+
 /* --- mesh check ---------------------------------------------------------- */
 
 static vg_status accept(const struct vg_run *r, struct vg_error *err)
@@ -362,12 +369,19 @@ static vg_status prepare_flat(const struct vg_run *r,
   return vg_comm_agree(r->comm, st, err);
 }
 
-static vg_status put_slice(void *run, const struct vg_slice *slice,
+struct put {
+  struct vg_run *run;
+  struct vg_display *show;
+};
+
+static vg_status put_slice(void *context, const struct vg_slice *slice,
                            struct vg_error *err)
 {
-  struct vg_run *r = run;
-  vg_status st = vg_outputs_put(r->outputs, slice, err);
+  struct put *p = context;
+  struct vg_run *r = p->run;
+  vg_status st = vg_display_stopped(p->show, err);
 
+  if (st >= 0) st = vg_outputs_put(r->outputs, slice, err);
   return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
 }
 
@@ -379,6 +393,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        struct vg_error *err)
 {
   size_t front_faces = layers ? layers->front.n_face : 0;
+  struct put put = { r, show };
   struct vg_flat *flat = NULL;
   double t = vg_display_now();
   vg_status st;
@@ -391,7 +406,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   if (r->layers) r->memory_of.numbers += vg_layer_slices_bytes(r->layers);
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, flat, put_slice, r, &r->judge,
+                            r->threads, flat, put_slice, &put, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
@@ -433,6 +448,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change, err));
   VG_TRY(find_ineffective_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
+  VG_TRY(stop_here(r, show, err));
   r->slices = *vg_partition_slices(r->field);
   st = judge(r, p, NULL, sizing, show, err);
 done:
@@ -547,7 +563,9 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                       r->options.change, err));
   VG_TRY(find_ineffective_sources(r, p, &front, sizing, err));
   VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
+  VG_TRY(stop_here(r, show, err));
   VG_TRY(relax_tops(r, p, layers, err));
+  VG_TRY(stop_here(r, show, err));
   st = vg_layer_slices_open(&p->boundary.surface, &layers->layers,
                             vg_partition_slices(r->field),
                             (enum vg_layer_cells)p->resolved.settings.cells,
