@@ -52,25 +52,30 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
   return vg_job_status(vg_job_give(job, out, &n, sizeof n));
 }
 
+vg_status vg_job_give_patch(vanguard_job *job, const struct vg_mesh *m,
+                            size_t i, struct vanguard_patch *out)
+{
+  struct vanguard_patch p = { .struct_size = sizeof p };
+
+  if (i >= m->n_patch)
+    return vg_fail(&job->err, VG_ERR_USAGE,
+                   "there is no patch %zu: there are %zu, numbered from 0", i,
+                   m->n_patch);
+  p.id = m->patch[i].id;
+  p.bc = m->patch[i].bc;
+  p.bc_fun3d = m->patch[i].bc_fun3d;
+  p.name = m->patch[i].name;
+  return vg_job_give(job, out, &p, sizeof p);
+}
+
 vanguard_status vanguard_patch(vanguard_job *job, size_t i,
                                struct vanguard_patch *out)
 {
   VG_JOB_CALL(job);
-  struct vanguard_patch p = { .struct_size = sizeof p };
-  const struct vg_patch *from;
   vg_status st = vg_job_meshed(job);
 
-  if (st >= 0 && i >= job->run.slices.boundary->n_patch)
-    st = vg_fail(&job->err, VG_ERR_USAGE,
-                 "there is no patch %zu: the mesh has %zu", i,
-                 job->run.slices.boundary->n_patch);
-  if (st < 0) return vg_job_status(st);
-  from = &job->run.slices.boundary->patch[i];
-  p.id = from->id;
-  p.bc = from->bc;
-  p.bc_fun3d = from->bc_fun3d;
-  p.name = from->name;
-  return vg_job_status(vg_job_give(job, out, &p, sizeof p));
+  if (st >= 0) st = vg_job_give_patch(job, job->run.slices.boundary, i, out);
+  return vg_job_status(st);
 }
 
 static const struct vg_mesh *boundary_of(const vanguard_job *job)
@@ -125,6 +130,7 @@ vanguard_status vanguard_measure(vanguard_job *job,
   q.volume_ratio_p95 = field->volume_ratio[1];
   q.volume_ratio_max = field->volume_ratio[2];
   q.edge_within = field->edge_within;
+  q.is_valid = job->run.judge.is_valid;
   return vg_job_status(vg_job_give(job, out, &q, sizeof q));
 }
 
@@ -244,20 +250,45 @@ static vg_status plan_files(vanguard_job *job, const char *stem,
   return vg_outputs_plan(&job->problem, stem, NULL, list, o, &job->err);
 }
 
+/* The slices of the mesh, for as long as nobody calls vanguard_cancel. */
+static vg_status get_unless_stopped(const struct vg_slices *s, size_t i,
+                                    struct vg_slice *out, struct vg_error *err)
+{
+  vanguard_job *job = s->user;
+  const struct vg_slices *mesh = &job->run.slices;
+  vg_status st = vg_display_stopped(&job->show, err);
+
+  return st < 0 ? st : mesh->get(mesh, i, out, err);
+}
+
+static void put_slice(const struct vg_slices *s, struct vg_slice *slice)
+{
+  const vanguard_job *job = s->user;
+
+  job->run.slices.put(&job->run.slices, slice);
+}
+
 static vg_status put_files(vanguard_job *job, struct vg_outputs *o)
 {
   struct vg_run *r = &job->run;
+  struct vg_slices mesh = r->slices;
   vg_status st;
 
+  mesh.get = get_unless_stopped;
+  mesh.put = put_slice;
+  mesh.user = job;
+
   VG_TRY(vg_outputs_check(&job->problem, o, &job->err));
-  VG_TRY(vg_outputs_open(o, &job->problem, r->comm, &r->slices, &job->err));
+  VG_TRY(vg_outputs_open(o, &job->problem, r->comm, &mesh, &job->err));
   st = o->n_open
-       ? vg_slices_each(&r->slices, r->threads, vg_outputs_put, o, &job->err)
+       ? vg_slices_each(&mesh, r->threads, vg_outputs_put, o, &job->err)
        : VG_OK;
   VG_TRY(vg_outputs_close(o, st, &job->err));
-  VG_TRY(vg_outputs_mesh(o, &job->problem, &job->layers, r->comm, &r->slices,
+  VG_TRY(vg_outputs_mesh(o, &job->problem, &job->layers, r->comm, &mesh,
                          r->threads, &job->err));
-  st = r->rank ? VG_OK : vg_outputs_commit(o, &job->err);
+  st = vg_comm_agree(r->comm, vg_display_stopped(&job->show, &job->err),
+                     &job->err);
+  if (st >= 0 && !r->rank) st = vg_outputs_commit(o, &job->err);
 done:
   return st;
 }
@@ -270,7 +301,12 @@ vanguard_status vanguard_write(vanguard_job *job, const char *stem,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0) st = vg_job_needs(job, stem, "stem");
+  if (st >= 0 && job->identity)
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "the mesh was read from a file: vanguard_write writes meshes "
+                 "of vanguard_mesh only");
   if (st < 0) return vg_job_status(st);
+  atomic_store(&job->show.asked, 0);
   st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
   if (st >= 0 && !job->run.rank) vg_outputs_sweep(&o, &job->problem.notes);
   if (st >= 0) st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);

@@ -11,7 +11,8 @@
 #include "core/sizing/sizing_mesh.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
-#include "run/stages/run.h"
+#include "io/mesh/format.h"
+#include "run/stages/report_run.h"
 
 /* Pieces of the mesh that have been given to the caller, in the order of their
  * numbers (pieces.c). */
@@ -54,6 +55,12 @@ struct vanguard_job {
   struct vg_layer_stage layers;
   struct vg_run run;
   int is_meshed;
+  struct vg_run_times times;
+  struct vg_error failure; /* Of the last run; code VG_OK: none. */
+  struct vg_mesh file;     /* Mesh of vanguard_read, in the only slice. */
+  struct vg_turned turned; /* What vanguard_read has turned. */
+  uint32_t *identity;      /* [file.n_point] Numbers of its points. */
+  char *report;            /* Text of vanguard_report. */
   struct vg_job_lent lent; /* Pieces that the caller holds. */
   uint32_t *wall_point;    /* [n_point] made by vanguard_wall_points at its
                               first call; NULL before */
@@ -90,6 +97,10 @@ void vg_job_leave(const vanguard_job *const *job);
   if (vg_job_enter(job)) return nothing;                                       \
   VG_JOB_CLAIM(job)
 
+/** Prepare a job for a run: the last one is released, and the callback and the
+ * ranks are those of the new one. */
+void vg_job_begin(vanguard_job *job, vanguard_progress *progress, void *user);
+
 /** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);
 vg_status vg_job_meshed(vanguard_job *job);
@@ -98,6 +109,10 @@ vg_status vg_job_meshed(vanguard_job *job);
  * call is NULL. name: that of the argument, for the message. */
 vg_status vg_job_needs(vanguard_job *job, const void *argument,
                        const char *name);
+
+/** Give patch i of a mesh, or VG_ERR_USAGE. (access.c) */
+vg_status vg_job_give_patch(vanguard_job *job, const struct vg_mesh *m,
+                            size_t i, struct vanguard_patch *out);
 
 /** Take back all pieces that the caller holds. (pieces.c) */
 void vg_job_take_back(vanguard_job *job);

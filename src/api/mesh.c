@@ -29,6 +29,13 @@ void vg_job_release_run(vanguard_job *job, int success)
   job->wall_point = NULL;
   free(job->details);
   job->details = NULL;
+  vg_mesh_release(&job->file);
+  free(job->identity);
+  job->identity = NULL;
+  free(job->report);
+  job->report = NULL;
+  memset(&job->failure, 0, sizeof job->failure);
+  memset(&job->times, 0, sizeof job->times);
   job->is_meshed = 0;
 }
 
@@ -146,33 +153,72 @@ static void describe_surface(vanguard_job *job)
   }
 }
 
-static vg_status make(vanguard_job *job)
+/* What a run makes; each includes the one before. */
+enum goal { GOAL_SURFACE, GOAL_BOUNDARY, GOAL_MESH };
+
+/* The surface without a farfield or symmetry plane, as vanguard surface makes
+ * it. */
+static vg_status make_surface(vanguard_job *job)
 {
-  struct vg_run *r = &job->run;
-  struct vg_mesh front;
   struct vg_problem *p = &job->problem;
+  const struct vg_shape_options o = { .threads = (int)p->asked.threads,
+                                      .remesh_open = 1 };
   vg_status st;
 
-  VG_TRY(read_input(job));
-  VG_TRY(vg_run_surface(r, p, &job->layers, &job->show, &job->err));
+  if (job->run.size > 1)
+    return vg_fail(&job->err, VG_ERR_UNSUPPORTED,
+                   "a job with %d ranks cannot make a surface alone: use a job "
+                   "of one process",
+                   job->run.size);
+  VG_TRY(vg_boundary_shape(&p->read, &o, &job->show, &p->boundary, &job->err));
+  VG_TRY(vg_boundary_check(&p->boundary, &job->show, &job->err));
+  vg_boundary_note_unset(&p->boundary);
+  vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
+done:
+  return st;
+}
+
+static vg_status make_mesh(vanguard_job *job)
+{
+  struct vg_run *r = &job->run;
+  struct vg_problem *p = &job->problem;
+  struct vg_mesh front;
+  vg_status st;
+
   VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
   front = vg_layer_stage_front(&job->layers, &p->boundary.surface);
   vg_effects_note(&r->effects, &front, &p->resolved.settings, &p->notes);
   vg_problem_note_unused(p, job->layers.is_on, VG_USE_JUDGED_MESH);
   if (!r->rank)
     vg_report_layers_note(&job->layers, &p->boundary.surface, &p->notes);
+  st = vg_run_memory(r, &job->err);
 done:
   return st;
 }
 
-vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
-                              void *user)
+static vg_status make(vanguard_job *job, enum goal goal)
 {
-  VG_JOB_CALL(job);
-  struct vg_run *r = &job->run;
-  vg_status st = vg_job_usable(job);
+  double t = vg_display_now();
+  vg_status st;
 
-  if (st < 0) return vg_job_status(st);
+  vg_display_update(&job->show, "read", 0, 0);
+  VG_TRY(read_input(job));
+  job->times.read = vg_display_now() - t;
+  t = vg_display_now();
+  st = goal == GOAL_SURFACE
+       ? make_surface(job)
+       : vg_run_surface(&job->run, &job->problem, &job->layers, &job->show,
+                        &job->err);
+  job->times.check = vg_display_now() - t;
+  if (st >= 0 && goal == GOAL_MESH) st = make_mesh(job);
+done:
+  return st;
+}
+
+void vg_job_begin(vanguard_job *job, vanguard_progress *progress, void *user)
+{
+  struct vg_run *r = &job->run;
+
   vg_job_release_run(job, 1);
   job->progress = progress;
   job->progress_user = user;
@@ -180,12 +226,43 @@ vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
   job->show.quiet = 1;
   job->show.tell = tell;
   job->show.user = job;
+  job->times.start = vg_display_now();
   r->comm = job->comm;
   r->rank = vg_comm_rank(job->comm);
   r->size = vg_comm_size(job->comm);
   r->options.change = VG_AGREE_NOTHING;
-  st = make(job);
+}
+
+static vanguard_status run(vanguard_job *job, enum goal goal,
+                           vanguard_progress *progress, void *user)
+{
+  VG_JOB_CALL(job);
+  vg_status st = vg_job_usable(job);
+
+  if (st < 0) return vg_job_status(st);
+  vg_job_begin(job, progress, user);
+  st = make(job, goal);
   describe_surface(job);
-  job->is_meshed = st >= 0;
+  if (st < 0) job->failure = job->err;
+  job->times.total = vg_display_now() - job->times.start;
+  job->is_meshed = st >= 0 && goal == GOAL_MESH;
   return vg_job_status(st);
+}
+
+vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
+                              void *user)
+{
+  return run(job, GOAL_MESH, progress, user);
+}
+
+vanguard_status vanguard_check(vanguard_job *job, vanguard_progress *progress,
+                               void *user)
+{
+  return run(job, GOAL_BOUNDARY, progress, user);
+}
+
+vanguard_status vanguard_make_surface(vanguard_job *job,
+                                      vanguard_progress *progress, void *user)
+{
+  return run(job, GOAL_SURFACE, progress, user);
 }

@@ -293,10 +293,98 @@ VANGUARD_API vanguard_status vanguard_mesh(vanguard_job *job,
                                            vanguard_progress *progress,
                                            void *user);
 
-/** Stop a running vanguard_mesh, which soon returns VANGUARD_ERR_STOPPED on all
- * ranks. Has no effect if none is running. May be called by any thread and
- * from a signal handler. */
+/** Stop a running vanguard_mesh, vanguard_check, vanguard_make_surface or
+ * vanguard_write, which then returns VANGUARD_ERR_STOPPED within about a
+ * second, on all ranks. Only formats that need the whole mesh in one piece
+ * (vanguard_write) may take longer to write. Has no effect if none is running.
+ * May be called by any thread and from a signal handler. */
 VANGUARD_API void vanguard_cancel(vanguard_job *job);
+
+/** Read, repair, remesh and complete the surface as vanguard_mesh does, decide
+ * the flow domain, and plan the layers, without generating cells. The result is
+ * success if vanguard_mesh would begin to generate cells, and otherwise its
+ * error. vanguard_boundary, vanguard_details, vanguard_note and vanguard_report
+ * describe the surface. Discards the mesh, as vanguard_mesh does. Collective.
+ */
+VANGUARD_API vanguard_status vanguard_check(vanguard_job *job,
+                                            vanguard_progress *progress,
+                                            void *user);
+
+/** As vanguard_check, but for the surface alone: it is repaired, and remeshed
+ * if the settings request it (remesh_surface), without a farfield, symmetry
+ * plane or layers, and may have open edges. For jobs of one process.
+ * VANGUARD_ERR_GEOMETRY: it has defects other than open edges. */
+VANGUARD_API vanguard_status vanguard_make_surface(vanguard_job *job,
+                                                   vanguard_progress *progress,
+                                                   void *user);
+
+/** Read a mesh from a file in one of the formats that `vanguard check` reads;
+ * names and conditions of patches come from the setting "mapbc", or from
+ * STEM.mapbc. The job then has this mesh instead of one of its own, for the
+ * functions below except vanguard_write; it has one piece, no layers, and its
+ * points and cells have the order of the file (n_boundary_point is 0 if
+ * boundary points do not come first). vanguard_measure has its quality and
+ * whether it is valid. Settings and input of the job do not change. For jobs of
+ * one process. VANGUARD_ERR_INPUT: the file has no cells. After a failure the
+ * job has no mesh. */
+VANGUARD_API vanguard_status vanguard_read(vanguard_job *job, const char *file);
+
+/* --- the surface --------------------------------------------------------- */
+/* The functions below need the surface of vanguard_check, vanguard_make_surface
+ * or vanguard_mesh, which may have been refused for its defects. They are
+ * available on the first rank of each node. Returned pointers are valid until
+ * the next of these calls, vanguard_read or vanguard_free. */
+
+struct vanguard_patch {
+  size_t struct_size;
+  int32_t id;           /* patch id in the input and in files */
+  int32_t bc, bc_fun3d; /* USM3D and FUN3D condition; INT32_MIN: none */
+  const char *name;     /* may be "" */
+};
+
+/** The surface, complete after vanguard_check and vanguard_mesh, and the flow
+ * domain. */
+struct vanguard_boundary {
+  size_t struct_size;
+  size_t n_point, n_tri, n_patch;
+  const char *flow;     /* "external", "internal"; "unknown": not decided */
+  size_t n_body;        /* bodies in the fluid */
+  size_t n_outer;       /* given outer boundaries */
+  size_t n_cavity;      /* sealed cavities that were dropped */
+  int32_t half_axis;    /* half model: 0 to 2, axis of the symmetry plane; -1:
+                           whole model */
+  double half_at;       /* coordinate of that plane */
+  int32_t is_remeshed;  /* 1: the surface was remeshed */
+  int32_t has_farfield; /* 1: a farfield was added */
+  int32_t has_symmetry; /* 1: a symmetry plane was added */
+  size_t n_defect;      /* defects that are left, and the open edges of these */
+  size_t n_open_edge;
+};
+VANGUARD_API vanguard_status vanguard_boundary(vanguard_job *job,
+                                               struct vanguard_boundary *out);
+VANGUARD_API vanguard_status vanguard_boundary_patch(
+  vanguard_job *job, size_t i, struct vanguard_patch *out);
+
+/** Copy the surface into arrays of the caller: coordinates [n_point][3], point
+ * numbers [n_tri][3], and the patch of each triangle [n_tri] as an index for
+ * vanguard_boundary_patch. Triangles are counter-clockwise seen from the fluid.
+ * Arrays that are NULL are skipped. */
+VANGUARD_API vanguard_status vanguard_boundary_arrays(vanguard_job *job,
+                                                      double *xyz,
+                                                      uint32_t *tri,
+                                                      uint32_t *patch);
+
+/** Report on the last vanguard_mesh, vanguard_check, vanguard_make_surface or
+ * vanguard_read, also if it has failed.
+ *
+ * @param form  "json": the members of the .report.json of `vanguard mesh`
+ *              (docs/reference/programs.md) without "files"; after
+ * vanguard_read those of `vanguard check --json`. "text": the report for people
+ * @param out   the report, valid until the next call of this function or of one
+ *              of those above; "" except on rank 0 */
+VANGUARD_API vanguard_status vanguard_report(vanguard_job *job,
+                                             const char *form,
+                                             const char **out);
 
 /* --- the mesh ------------------------------------------------------------ */
 /* The functions below need a mesh. Without one they return VANGUARD_ERR_USAGE,
@@ -323,12 +411,6 @@ struct vanguard_counts {
 VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
                                             struct vanguard_counts *out);
 
-struct vanguard_patch {
-  size_t struct_size;
-  int32_t id;           /* patch id in the input and in files */
-  int32_t bc, bc_fun3d; /* USM3D and FUN3D condition; INT32_MIN: none */
-  const char *name;     /* may be "" */
-};
 VANGUARD_API vanguard_status vanguard_patch(vanguard_job *job, size_t i,
                                             struct vanguard_patch *out);
 
@@ -389,6 +471,8 @@ struct vanguard_quality {
   double radius_ratio_min, radius_ratio_mean; /* 3 inradius / circumradius */
   double volume_ratio_p95, volume_ratio_max;  /* of cells that share a face */
   double edge_within; /* % of edges within 0.7 to 1.5 times the target */
+  int32_t is_valid; /* 1: all cells are positive and fit together; 0 is possible
+                       after vanguard_read only */
 };
 VANGUARD_API vanguard_status vanguard_measure(vanguard_job *job,
                                               struct vanguard_quality *out);

@@ -446,6 +446,26 @@ static void call_mesh(void)
 {
   vanguard_job *j = some_job();
 
+  if (!pick(5)) {
+    expect(j, vanguard_check(j, pick(2) ? progress : NULL, j));
+    return;
+  }
+  if (!pick(8)) {
+    expect(j, vanguard_make_surface(j, pick(2) ? progress : NULL, j));
+    return;
+  }
+  if (!pick(8)) {
+    static const char *const file[] = { FOLDER "/out.b8.ugrid",
+                                        FOLDER "/damaged.lb8.ugrid",
+                                        FOLDER "/box.stl",
+                                        "/nowhere/a.ugrid",
+                                        FOLDER "/folder",
+                                        "",
+                                        NULL };
+
+    expect(j, vanguard_read(j, ONE_OF(file)));
+    return;
+  }
   if (pick(3)) vanguard_set(j, "max_cells", "20000");
   n_mesh++;
   n_meshed += (size_t)expect(j, vanguard_mesh(j, pick(2) ? progress : NULL, j));
@@ -470,12 +490,24 @@ static size_t some_size(size_t whole)
     expect(j, function(j, __VA_ARGS__ pick(12) ? &out : NULL));                \
   } while (0)
 
+static void call_report(vanguard_job *j)
+{
+  static const char *const form[] = { "json", "text", "html", NULL };
+  const char *text = NULL;
+
+  if (expect(j, vanguard_report(j, ONE_OF(form), pick(9) ? &text : NULL)))
+    assert_true(*text);
+}
+
 static void call_figures(void)
 {
   vanguard_job *j = some_job();
   struct vanguard_setting s = { .struct_size = some_size(sizeof s) };
 
-  switch (pick(7)) {
+  switch (pick(10)) {
+  case 7: ASK(vanguard_boundary, vanguard_boundary, ); break;
+  case 8: ASK(vanguard_boundary_patch, vanguard_patch, some_index(), ); break;
+  case 9: call_report(j); break;
   case 0: ASK(vanguard_count, vanguard_counts, ); break;
   case 1: ASK(vanguard_measure, vanguard_quality, ); break;
   case 2: ASK(vanguard_patch, vanguard_patch, some_index(), ); break;
@@ -494,10 +526,17 @@ static void call_arrays(void)
 {
   vanguard_job *j = some_job();
   struct vanguard_counts n = VANGUARD_INIT(n);
+  struct vanguard_boundary b = VANGUARD_INIT(b);
   const uint32_t *tri;
   double *x;
   uint32_t *tet;
 
+  if (!vanguard_boundary(j, &b)) {
+    tet = malloc((b.n_tri + 1) * 3 * sizeof *tet);
+    assert_true(expect(j, vanguard_boundary_arrays(j, NULL, tet, NULL)));
+    for (size_t i = 0; i < 3 * b.n_tri; i++) assert_true(tet[i] < b.n_point);
+    free(tet);
+  }
   if (vanguard_count(j, &n) < 0) {
     expect(j, vanguard_arrays(j, NULL, NULL, NULL, NULL));
     assert_null(vanguard_triangles(j));

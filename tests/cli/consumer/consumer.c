@@ -587,6 +587,93 @@ static void writes(const char *dir)
   vanguard_free(job);
 }
 
+/* The surface with its farfield, without a mesh. */
+static void checks_surfaces(void)
+{
+  vanguard_job *job = new_cube();
+  struct vanguard_boundary b = VANGUARD_INIT(b);
+  struct vanguard_patch p = VANGUARD_INIT(p);
+  struct vanguard_counts n = VANGUARD_INIT(n);
+  const char *text;
+  uint32_t *tri, *patch, turned[2 * SIDE][3];
+  double *x;
+
+  CHECK(vanguard_boundary(job, &b) == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_report(job, "json", &text) == VANGUARD_ERR_USAGE);
+  CHECK(!vanguard_check(job, NULL, NULL) && !vanguard_boundary(job, &b));
+  CHECK(!strcmp(b.flow, "internal") && b.n_tri == 2 * SIDE && b.n_patch == 6);
+  CHECK(!b.has_farfield && !b.n_defect && b.half_axis == -1);
+  CHECK(vanguard_count(job, &n) == VANGUARD_ERR_USAGE);
+  CHECK(!vanguard_boundary_patch(job, 5, &p) && p.id == 15);
+  CHECK(vanguard_boundary_patch(job, 6, &p) == VANGUARD_ERR_USAGE);
+  CHECK(!vanguard_report(job, "json", &text) && strstr(text, "\"ok\": true"));
+  CHECK(!vanguard_report(job, "text", &text) && strstr(text, "Surface"));
+  CHECK(vanguard_report(job, "html", &text) == VANGUARD_ERR_INPUT);
+  /* Turned inside out, the cube is a body in a farfield. */
+  for (int i = 0; i < 2 * SIDE; i++)
+    for (int k = 0; k < 3; k++) turned[i][k] = cube.tri[i][2 - k];
+  CHECK(!vanguard_surface(job, "body", cube.n_point, cube.x[0], 2 * SIDE,
+                          turned[0], NULL));
+  CHECK(!vanguard_set(job, "remesh_surface", "yes"));
+  CHECK(!vanguard_make_surface(job, NULL, NULL) && !vanguard_boundary(job, &b));
+  CHECK(b.is_remeshed && !b.has_farfield);
+  CHECK(!vanguard_check(job, NULL, NULL) && !vanguard_boundary(job, &b));
+  CHECK(!strcmp(b.flow, "external") && b.has_farfield && b.n_patch == 2);
+  x = calloc(b.n_point, 3 * sizeof *x);
+  tri = calloc(b.n_tri, 3 * sizeof *tri);
+  patch = calloc(b.n_tri, sizeof *patch);
+  CHECK(!vanguard_boundary_arrays(job, x, tri, patch));
+  for (size_t i = 0; i < b.n_tri; i++)
+    CHECK(tri[3 * i] < b.n_point && patch[i] < 2);
+  free(x);
+  free(tri);
+  free(patch);
+  /* A refused surface: its defects are reported. */
+  CHECK(!vanguard_surface(job, "open", cube.n_point, cube.x[0], 2 * SIDE - 1,
+                          cube.tri[0], NULL));
+  CHECK(vanguard_check(job, NULL, NULL) == VANGUARD_ERR_GEOMETRY);
+  CHECK(!vanguard_boundary(job, &b) && b.n_open_edge == 3);
+  CHECK(!vanguard_report(job, "json", &text) && strstr(text, "\"error\""));
+  vanguard_free(job);
+}
+
+/* A mesh that was written is read back: the same arrays. */
+static void reads(const char *dir)
+{
+  vanguard_job *job = new_cube(), *other;
+  struct vanguard_quality q = VANGUARD_INIT(q);
+  struct vanguard_piece s = VANGUARD_INIT(s);
+  struct arrays made, read;
+  char stem[4096], path[4200];
+  const char *text;
+
+  snprintf(stem, sizeof stem, "%s/again", dir);
+  snprintf(path, sizeof path, "%s/again.lb8.ugrid", dir);
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  CHECK(!vanguard_report(job, "json", &text) && strstr(text, "\"mesh\": {"));
+  CHECK(!vanguard_write(job, stem, "lb8.ugrid"));
+  take(job, &made);
+  CHECK(!vanguard_new(VANGUARD_ABI, &other));
+  CHECK(!vanguard_read(other, path));
+  take(other, &read);
+  CHECK(same(&made, &read));
+  CHECK(read.n.n_boundary_point == made.n.n_boundary_point);
+  CHECK(!vanguard_measure(other, &q) && q.is_valid == 1 &&
+        fabs(q.volume - 1) < 1e-12);
+  CHECK(vanguard_pieces(other) == 1 && !vanguard_piece_get(other, 0, &s) &&
+        s.n_tet == made.n.n_tet && s.n_own == made.n.n_point);
+  CHECK(!vanguard_report(other, "text", &text) && strstr(text, "valid"));
+  CHECK(!vanguard_walls(other));
+  CHECK(vanguard_write(other, stem, "vtu") == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_read(other, "/nowhere/mesh.lb8.ugrid") < 0);
+  CHECK(vanguard_count(other, &read.n) == VANGUARD_ERR_USAGE);
+  vanguard_piece_put(other, &s);
+  drop(&made);
+  drop(&read);
+  vanguard_free(job);
+  vanguard_free(other);
+}
+
 static void *mesh_in_thread(void *out)
 {
   vanguard_job *job = new_cube();
@@ -623,7 +710,9 @@ int main(int argc, char **argv)
   refuses_a_second_call();
   takes_sizes();
   takes_metrics();
+  checks_surfaces();
   if (argc > 1) writes(argv[1]);
+  if (argc > 1) reads(argv[1]);
   CHECK(!vanguard_prepare());
   meshes_in_threads();
   if (!n_bad) printf("libvanguard %s works\n", vanguard_version());
