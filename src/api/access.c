@@ -301,7 +301,7 @@ vanguard_status vanguard_write(vanguard_job *job, const char *stem,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0) st = vg_job_needs(job, stem, "stem");
-  if (st >= 0 && job->identity)
+  if (st >= 0 && job->file.identity)
     st = vg_fail(&job->err, VG_ERR_USAGE,
                  "the mesh was read from a file: vanguard_write writes meshes "
                  "of vanguard_mesh only");

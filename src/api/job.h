@@ -11,7 +11,7 @@
 #include "core/sizing/sizing_mesh.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
-#include "io/mesh/format.h"
+#include "run/stages/file_mesh.h"
 #include "run/stages/report_run.h"
 
 /* Pieces of the mesh that have been given to the caller, in the order of their
@@ -56,14 +56,12 @@ struct vanguard_job {
   struct vg_run run;
   int is_meshed;
   struct vg_run_times times;
-  struct vg_error failure; /* Of the last run; code VG_OK: none. */
-  struct vg_mesh file;     /* Mesh of vanguard_read, in the only slice. */
-  struct vg_turned turned; /* What vanguard_read has turned. */
-  uint32_t *identity;      /* [file.n_point] Numbers of its points. */
-  char *report;            /* Text of vanguard_report. */
-  struct vg_job_lent lent; /* Pieces that the caller holds. */
-  uint32_t *wall_point;    /* [n_point] made by vanguard_wall_points at its
-                              first call; NULL before */
+  struct vg_error failure;  /* Of the last run; code VG_OK: none. */
+  struct vg_file_mesh file; /* Mesh of vanguard_read. */
+  char *report;             /* Text of vanguard_report. */
+  struct vg_job_lent lent;  /* Pieces that the caller holds. */
+  uint32_t *wall_point;     /* [n_point] made by vanguard_wall_points at its
+                               first call; NULL before */
   char *details;
 };
 

@@ -29,9 +29,7 @@ void vg_job_release_run(vanguard_job *job, int success)
   job->wall_point = NULL;
   free(job->details);
   job->details = NULL;
-  vg_mesh_release(&job->file);
-  free(job->identity);
-  job->identity = NULL;
+  vg_file_mesh_release(&job->file);
   free(job->report);
   job->report = NULL;
   memset(&job->failure, 0, sizeof job->failure);

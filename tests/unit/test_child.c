@@ -16,7 +16,7 @@
 
 #include "base/child.h"
 
-/* Child bodies: one that answers, and one that never looks at its socket. */
+/* Child bodies: one that answers, and one that never reads its socket. */
 
 static void echo(int fd)
 {

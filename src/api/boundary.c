@@ -83,14 +83,14 @@ vanguard_status vanguard_boundary_arrays(vanguard_job *job, double *xyz,
 /* The report on a mesh that was read, as that of vanguard check. */
 static json_t *file_json(const vanguard_job *job)
 {
-  const struct vg_mesh *m = &job->file;
+  const struct vg_mesh *m = &job->file.mesh;
 
   return json_pack("{s:s s:o s:b s:I s:o s:o s:o}", "vanguard", VG_VERSION,
                    "file", vg_text_json(job->problem.asked.title), "ok",
                    job->run.judge.is_valid, "cells_turned",
-                   (json_int_t)job->turned.cell, "size", vg_report_size_json(m),
-                   "patches", vg_report_patches_json(m), "mesh",
-                   vg_report_mesh_json(&job->run.judge, m));
+                   (json_int_t)job->file.n_turned, "size",
+                   vg_report_size_json(m), "patches", vg_report_patches_json(m),
+                   "mesh", vg_report_mesh_json(&job->run.judge, m));
 }
 
 static struct vg_run_report report_of(const vanguard_job *job)
@@ -102,7 +102,7 @@ static struct vg_run_report report_of(const vanguard_job *job)
 static char *json_report(const vanguard_job *job)
 {
   const struct vg_run_report r = report_of(job);
-  json_t *o = job->identity
+  json_t *o = job->file.identity
               ? file_json(job)
               : vg_run_report_json(&r, job->failure.code >= 0, &job->failure);
   char *text = o ? json_dumps(o, JSON_INDENT(2)) : NULL;
@@ -119,9 +119,9 @@ static char *text_report(const vanguard_job *job)
   FILE *to = open_memstream(&text, &size);
   int bad = !to;
 
-  if (to && job->identity) {
-    vg_report_size_text(to, &job->file);
-    bad = vg_report_patches_text(to, &job->file, NULL) < 0;
+  if (to && job->file.identity) {
+    vg_report_size_text(to, &job->file.mesh);
+    bad = vg_report_patches_text(to, &job->file.mesh, NULL) < 0;
     vg_report_mesh_text(to, &job->run.judge, 1);
   } else if (to) {
     vg_run_report_text(to, &r);
