@@ -9,11 +9,17 @@
 #   --quick  only the demo wing-half with few layers, tetrahedra and mixed;
 #            otherwise with many layers, and DLR-F6 (from --data) with layers
 #   --work   scratch folder, kept (default: a temporary one, removed)
-# Clients: gmsh, which reads .msh, prints the volume and saves the mesh as text
-# of version 2.2; cgnscheck and VTK's reader (python3-vtk9) for .cgns;
-# fluent3DMeshToFoam and checkMesh for .fluent.msh. Clients that are not
-# installed are omitted, with a message.
-# Exit status: 0 equal, 1 a difference, 2 usage, 77 no client is installed.
+# Clients and Debian packages: gmsh (gmsh) for .msh, .mesh; cgnscheck
+# (cgns-convert); checkMesh, gmshToFoam and fluent3DMeshToFoam (openfoam) for
+# .openfoam, .msh, .fluent.msh; cs_preprocess (code-saturne-bin) for .msh and
+# .cgns; FreeFem++ (freefem++ libfreefem++) for .mesh, .meshb; and in Python VTK
+# (python3-vtk9) for .vtu, .cgns, .openfoam, .fluent.msh; meshio
+# (python3-meshio) for .msh, .meshb, .ugrid, .su2, .vtu; PETSc
+# (python3-petsc4py) and Netgen (python3-netgen) for .msh. Nothing is installed:
+# clients that are absent are omitted, with a message. The guide's table of
+# programs (docs/guide/other_tools.md) states what this script shows; files that
+# a client cannot read are tried too, and fail the run when they can be read.
+# Exit status: 0 as stated, 1 a difference, 2 usage, 77 no client is installed.
 set -uo pipefail
 shopt -s lastpipe   # keep variables set by `compare` at the end of a pipe
 export LC_ALL=C
@@ -54,11 +60,19 @@ then
   . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
   set -u
 fi
-python=
-for p in python3 /usr/bin/python3; do
-  [ -z "$python" ] && "$p" -c 'import vtkmodules.vtkIOCGNSReader' 2>/dev/null &&
-    python=$p
-done
+readers=$here/readers.py
+# The first Python that has the library of a client of readers.py.
+python_for() {
+  local p
+  for p in python3 /usr/bin/python3; do
+    "$p" "$readers" has "$1" 2>/dev/null && echo "$p" && return
+  done
+  return 1
+}
+saturne=$(command -v cs_preprocess || ls /usr/lib/code_saturne/cs_preprocess \
+  2>/dev/null)
+# Debian's FreeFem++ does not look where its modules are.
+export FF_LOADPATH=${FF_LOADPATH:-/usr/lib/freefem++}
 
 # --- findings, one per line: "tetrahedra N", ..., "patch NAME N", "volume V"
 # with five digits, sorted; kinds without cells are omitted ---
@@ -102,37 +116,16 @@ of_cgnscheck() {
          print "patch", bc, r[2] - r[1] + 1; bc = "" }'
 }
 
-cat > "$work/read_cgns.py" <<'END'
-import sys
-from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
-from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
-
-kinds = {10: "tetrahedra", 14: "pyramids", 13: "prisms"}
-reader = vtkCGNSReader()
-reader.SetFileName(sys.argv[1])
-reader.UpdateInformation()
-reader.EnableAllBases()
-reader.LoadBndPatchOn()
-reader.Update()
-zone = reader.GetOutput().GetBlock(0).GetBlock(0)
-cells, patches = zone.GetBlock(0), zone.GetBlock(1)
-n = dict.fromkeys(kinds, 0)
-for i in range(cells.GetNumberOfCells()):
-    n[cells.GetCellType(i)] += 1
-for code in kinds:
-    if n[code]:
-        print(kinds[code], n[code])
-for i in range(patches.GetNumberOfBlocks()):
-    print("patch", patches.GetMetaData(i).Get(patches.NAME()),
-          patches.GetBlock(i).GetNumberOfCells())
-size = vtkCellSizeFilter()
-size.SetInputData(cells)
-size.Update()
-# the reader keeps CGNS's order of prism nodes, which VTK reads as inverted
-volume = size.GetOutput().GetCellData().GetArray("Volume")
-print("volume %.5g" % sum(abs(volume.GetValue(i))
-                          for i in range(cells.GetNumberOfCells())))
-END
+# of cs_preprocess
+of_saturne() {
+  awk '/Number of elements +(tetra4|pyramid5|penta6)/ {
+         sub("tetra4", "tetrahedra"); sub("pyramid5", "pyramids")
+         sub("penta6", "prisms"); print $4, $NF }
+       /^ *Group "/ { split($0, q, "\""); if (q[2] !~ /^[0-9]+$/) g = q[2] }
+       /^ *Family [0-9]+$/ { g = "" }
+       /Number of boundary faces :/ && !/Main/ && g { print "patch", g, $NF }' |
+    sort -u
+}
 
 # of checkMesh
 of_foam() {
@@ -145,21 +138,39 @@ of_foam() {
          printf "volume %.5g\n", $0 }'
 }
 
-# compare CLIENT [volume]: findings on standard input, with the volume if
-# "volume" is given.
+# compare CLIENT [volume|ids|solid]: findings on standard input. Without a word
+# there is no volume; "ids": patches are called tag_ID; "solid": no patches.
+# Remarks of readers.py are shown.
 compare() {
-  local want=$d/findings
-  if [ $# = 1 ]; then
-    grep -v '^volume' "$want" > "$want.no_volume"
-    want=$want.no_volume
-  fi
-  sort > "$d/$1.findings"
+  local want=$d/findings remark
+  case ${2:-} in
+    volume) ;;
+    ids) want=$d/ids ;;
+    solid) grep -v '^patch' "$want" > "$want.solid"; want=$want.solid ;;
+    *) grep -v '^volume' "$want" > "$want.no_volume"; want=$want.no_volume ;;
+  esac
+  sort > "$d/$1.all"
+  remark=$(grep -E '^(negative|reals)' "$d/$1.all" | tr '\n' ' ')
+  [ -z "$remark" ] || echo "  $1: $remark"
+  grep -vE '^(negative|reals)' "$d/$1.all" > "$d/$1.findings"
   if diff "$want" "$d/$1.findings" > "$d/$1.diff"; then
     echo "  $1: the same"
   else
     echo "  $1: FAIL, < vanguard, > $1"
     head -10 "$d/$1.diff" | sed 's/^/    /'
     failed=1
+  fi
+}
+
+# refuses CLIENT COMMAND...: the command must fail.
+refuses() {
+  local client=$1
+  shift
+  if "$@" > "$d/log.refuses" 2>&1; then
+    echo "  $client: FAIL: it accepts the file; correct the guide"
+    failed=1
+  else
+    echo "  $client: refused, as the guide says"
   fi
 }
 
@@ -187,32 +198,116 @@ ask_gmsh() {
   # and Vanguard reads the file that gmsh saved
   "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check |
     compare back.msh volume
+  gmsh "$stem.mesh" -save -format msh22 -o "$d/back.msh" > "$d/log.mesh" 2>&1
+  if [ "$1" = tets ]; then
+    "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check |
+      grep -v '^patch' | compare gmsh.mesh solid
+  else
+    refuses gmsh.mesh grep -qE '^[0-9]+ (6|7) ' "$d/back.msh"
+  fi
   rm -f "$d/back.msh"
 }
 
 ask_cgns() {
-  if has cgnscheck; then
-    cgnscheck -v "$stem.cgns" > "$d/log.cgnscheck" 2>&1
-    grep -a ERROR "$d/log.cgnscheck" && { echo "  cgnscheck: FAIL"; failed=1; }
-    of_cgnscheck < "$d/log.cgnscheck" | compare cgnscheck
-  fi
-  if [ -n "$python" ]; then
-    clients=$((clients + 1))
-    "$python" "$work/read_cgns.py" "$stem.cgns" | compare vtk volume
-  else
-    echo "  VTK's reader (python3-vtk9) is not installed: omitted"
-  fi
+  has cgnscheck || return
+  cgnscheck -v "$stem.cgns" > "$d/log.cgnscheck" 2>&1
+  grep -a ERROR "$d/log.cgnscheck" && { echo "  cgnscheck: FAIL"; failed=1; }
+  of_cgnscheck < "$d/log.cgnscheck" | compare cgnscheck
+}
+
+# foam_case NAME COMMAND FILE: a converter to OpenFOAM, then checkMesh.
+foam_case() {
+  mkdir -p "$d/foam/constant"
+  cp -r "$stem.openfoam/system" "$d/foam/"
+  (cd "$d/foam" && "$2" "$3" && checkMesh) > "$d/log.$1" 2>&1 ||
+    { echo "  $1: FAIL: $(tail -1 "$d/log.$1")"; failed=1; }
+  sed -n '/^Mesh stats/,$p' "$d/log.$1" | of_foam | compare "$1" volume
+  rm -rf "$d/foam"
 }
 
 ask_foam() {
   has fluent3DMeshToFoam || return
+  foam_case fluent3DMeshToFoam fluent3DMeshToFoam "$stem.fluent.msh"
+  checkMesh -case "$stem.openfoam" > "$d/log.case" 2>&1
+  of_foam < "$d/log.case" | compare checkMesh volume
+  command -v gmsh >/dev/null || return
+  gmsh "$stem.msh" -save -format msh41 -o "$d/text.msh" > /dev/null 2>&1
+  foam_case gmshToFoam gmshToFoam "$d/text.msh"
   mkdir -p "$d/foam/constant"
   cp -r "$stem.openfoam/system" "$d/foam/"
-  (cd "$d/foam" && fluent3DMeshToFoam "$stem.fluent.msh" && checkMesh) \
-    > "$d/log.foam" 2>&1 ||
-    { echo "  fluent3DMeshToFoam: FAIL: $(tail -1 "$d/log.foam")"; failed=1; }
-  of_foam < "$d/log.foam" | compare fluent volume
-  rm -rf "$d/foam"
+  refuses "gmshToFoam.binary" gmshToFoam -case "$d/foam" "$stem.msh"
+  rm -rf "$d/foam" "$d/text.msh"
+}
+
+ask_saturne() {
+  [ -n "$saturne" ] || { echo "  code_saturne is not installed: omitted"
+    return; }
+  clients=$((clients + 1))
+  for suffix in msh cgns; do
+    (cd "$d" && "$saturne" --out saturne "$stem.$suffix") > "$d/log.saturne" 2>&1
+    of_saturne < "$d/log.saturne" | compare "code_saturne.$suffix"
+    rm -rf "$d/saturne"
+  done
+}
+
+# freefem FILE: tetrahedra and volume.
+freefem() {
+  printf '%s\n' 'load "msh3"' "mesh3 Th = readmesh3(\"$1\");" \
+    'real v = int3d(Th)(1.);' 'cout.precision(5);' \
+    'cout << "tetrahedra " << Th.nt << endl << "volume " << v << endl;' \
+    > "$d/read.edp"
+  FreeFem++ -nw -v 0 "$d/read.edp"
+}
+
+ask_freefem() {
+  has FreeFem++ || return
+  for suffix in mesh meshb; do
+    if [ "$1" = tets ]; then
+      freefem "$stem.$suffix" 2>/dev/null | grep -aE '^(tetrahedra|volume) ' |
+        compare "FreeFem++.$suffix" solid
+    else
+      refuses "FreeFem++.$suffix" freefem "$stem.$suffix"
+    fi
+  done
+}
+
+# library CLIENT SUFFIX [volume|ids|solid]
+library() {
+  local p
+  p=$(python_for "$1") || { echo "  $1 is not installed: omitted"; return; }
+  clients=$((clients + 1))
+  "$p" "$readers" "$1" "$stem.$2" 2> "$d/log.$1" |
+    grep -E '^(tetrahedra|pyramids|prisms|kind|patch|volume|negative|reals) ' |
+    compare "$1.$2" "${3:-}"
+}
+
+ask_libraries() {
+  local p
+  library vtk-vtu vtu solid
+  library vtk-cgns cgns volume
+  library vtk-foam openfoam volume
+  library vtk-fluent fluent.msh solid
+  library meshio msh volume
+  library meshio b8.ugrid ids
+  library meshio meshb ids
+  library meshio su2 ids
+  library meshio vtu solid
+  library petsc msh volume
+  if p=$(python_for meshio); then
+    refuses meshio.cgns "$p" "$readers" meshio "$stem.cgns"
+  fi
+  if p=$(python_for petsc); then
+    refuses petsc.cgns "$p" "$readers" petsc "$stem.cgns"
+  fi
+  if p=$(python_for netgen) && command -v gmsh >/dev/null; then
+    gmsh "$stem.msh" -save -format msh22 -o "$stem.text.msh" > /dev/null 2>&1
+    library netgen text.msh
+    rm -f "$stem.text.msh"
+  fi
+  if command -v gmsh >/dev/null; then
+    refuses gmsh.meshb sh -c \
+      "gmsh '$stem.meshb' -save -o '$d/x.msh' 2>&1 | grep -q tetrahedra"
+  fi
 }
 
 # --- the meshes ---
@@ -225,13 +320,16 @@ check_case() {
   mkdir -p "$d"
   echo "$name, $cells"
   "$vanguard" mesh -q -p "$project" --out "$d" --cells "$cells" \
-    --write b8.ugrid,mapbc,msh,cgns,fluent.msh,foam,su2 "$@" \
+    --write b8.ugrid,mapbc,msh,cgns,fluent.msh,foam,su2,vtu,mesh,meshb "$@" \
     > "$d/log.mesh" 2>&1 ||
     { echo "  FAIL: $(grep -a '^vanguard:' "$d/log.mesh" | tail -1)"
       failed=1; return; }
   stem=$(ls "$d"/*.b8.ugrid)
   stem=${stem%.b8.ugrid}
   "$vanguard" check -j "$stem.b8.ugrid" 2>/dev/null | of_check > "$d/findings"
+  "$vanguard" check -j "$stem.b8.ugrid" 2>/dev/null |
+    sed 's/"name": .*/"name": ,/; s/^ *"id": \(.*\),/"id": tag_\1/' | of_check |
+    sed 's/patch_tag_/tag_/' > "$d/ids"
   grep -vc patch "$d/findings" | grep -qv '^[01]$' ||
     { echo "  FAIL: nothing found in the .b8.ugrid"; failed=1; return; }
   awk '$1 == "patch" { p++; f += $3; next }
@@ -245,6 +343,9 @@ check_case() {
   ask_gmsh "$cells"
   ask_cgns
   ask_foam
+  ask_saturne
+  ask_freefem "$cells"
+  ask_libraries
   rm -rf "$stem".*
 }
 
