@@ -33,6 +33,12 @@ install(FILES ${CMAKE_BINARY_DIR}/vanguard-config.cmake
 file(RELATIVE_PATH includedir
   ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 set(VG_PC_INCLUDEDIR "\${pcfiledir}/${includedir}")
+# Programs find the library where it is, except in the folders of the system,
+# where the linker looks in any case.
+set(VG_PC_RPATH " -Wl,-rpath,\${libdir}")
+if(CMAKE_INSTALL_FULL_LIBDIR MATCHES "^/(usr/)?lib")
+  set(VG_PC_RPATH "")
+endif()
 configure_file(cmake/vanguard.pc.in ${CMAKE_BINARY_DIR}/vanguard.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/vanguard.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)

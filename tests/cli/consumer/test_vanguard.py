@@ -472,6 +472,48 @@ def test_threads():
     assert np.array_equal(found[0], found[2])
 
 
+def test_surfaces():
+    points, triangles, patches = cube(8)
+    with vanguard.Job() as job:
+        refused("usage", "no report", job.report)
+        job.surface(points, triangles, patches)
+        domain = job.check()
+        assert domain.flow == "internal" and not domain.has_farfield
+        assert len(domain.triangles) == len(triangles), domain
+        assert [p["id"] for p in domain.patches] == list(range(10, 16))
+        assert job.report()["flow"]["kind"] == "internal"
+        job.surface(points, triangles[:, ::-1], patches)
+        whole = job.check()
+        assert whole.flow == "external" and whole.has_farfield
+        alone = job.make_surface()
+        assert not alone.has_farfield and "external" in repr(alone)
+        assert alone.triangle_patches.max() < len(alone.patches) < len(
+            whole.patches)
+        job.surface(points, triangles[:-1], patches[:-1])
+        refused("geometry", "open", job.check)
+        assert job.boundary().n_open_edge == 3
+        assert not job.report()["ok"]
+    assert whole.points[whole.triangles].shape[1:] == (3, 3)
+
+
+def test_read(folder):
+    points, triangles, patches = cube(8)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    made = job.mesh()
+    assert made.report()["mesh"]["valid"] and "Volume mesh" in made.report(
+        "text")
+    made.write(os.path.join(folder, "read"), "lb8.ugrid")
+    read = vanguard.read(os.path.join(folder, "read.lb8.ugrid"))
+    assert np.array_equal(read.points, made.points)
+    assert np.array_equal(read.tetrahedra, made.tetrahedra)
+    assert np.array_equal(read.triangle_patches, made.triangle_patches)
+    assert read.quality["is_valid"] == 1
+    assert abs(read.quality["volume"] - made.quality["volume"]) < 1e-12
+    refused("usage", "read from a file", read.write, os.path.join(folder, "x"))
+    refused("io", "nowhere", vanguard.read, "/nowhere/mesh.ugrid")
+
+
 def test_same_as_program(folder, program):
     """A project with layers, for which TetGen is used too, gives the same bytes."""
     stem = os.path.join(folder, "demo", "wing-half")
