@@ -743,6 +743,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   VG_TRY(vg_read_sizes(r, err));
   VG_TRY(apply_conditions(r, err));
   VG_TRY(apply_patch_table(r, err));
+  vg_note_symmetry(r->notes, &r->surface);
   st = vg_read_place_cones(r, err);
 done:
   return st;
@@ -776,6 +777,7 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
   /* All layer settings are in the settings now, except heights by point. */
   if (!r->heights.n) r->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(r, err));
+  vg_note_symmetry(r->notes, &r->surface);
   st = vg_read_place_cones(r, err);
 done:
   return st;

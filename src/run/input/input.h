@@ -166,6 +166,11 @@ void vg_notes_release(struct vg_notes *notes);
  * its first n bytes. */
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
 
+/** Adds a note for each symmetry plane (USM3D 1) that is nearly normal to an
+ * axis but deviates too much to have a code of FUN3D's symmetry (6661 to 6663).
+ */
+void vg_note_symmetry(struct vg_notes *notes, const struct vg_mesh *m);
+
 /** Adds a line to the report; the line is lost if there is no memory. */
 void vg_note(struct vg_notes *notes, const char *format, ...)
   __attribute__((format(printf, 2, 3)));

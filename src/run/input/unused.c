@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Notes on settings without effect. Declared in run/input/input.h. */
+/* Notes on settings without effect, and on symmetry planes that FUN3D would not
+ * recognise. Declared in run/input/input.h. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,4 +99,56 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   if (s->n_surface && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes, "table that has no effect because %s: surface",
             reason[VG_USE_REMESH]);
+}
+
+/* A patch that is thinner than this part of the largest extent of the mesh is
+ * meant to be a plane. */
+#define NEARLY_PLANE 1e-3
+
+static void widen(double box[2], double x)
+{
+  if (x < box[0]) box[0] = x;
+  if (x > box[1]) box[1] = x;
+}
+
+/* Axis along which patch p is thinnest, and its extent there. */
+static int thin_axis(const struct vg_mesh *m, size_t p, double *extent)
+{
+  double box[3][2];
+  int axis = 0;
+
+  for (int k = 0; k < 3; k++) box[k][0] = INFINITY, box[k][1] = -INFINITY;
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; m->tri_patch[i] == p && k < 9; k++)
+      widen(box[k % 3], m->point[m->tri[i][k / 3]][k % 3]);
+  for (size_t i = 0; i < m->n_quad; i++)
+    for (int k = 0; m->quad_patch[i] == p && k < 12; k++)
+      widen(box[k % 3], m->point[m->quad[i][k / 3]][k % 3]);
+  for (int k = 1; k < 3; k++)
+    if (box[k][1] - box[k][0] < box[axis][1] - box[axis][0]) axis = k;
+  *extent = box[axis][1] - box[axis][0];
+  return axis;
+}
+
+void vg_note_symmetry(struct vg_notes *notes, const struct vg_mesh *m)
+{
+  double lo[3], hi[3], size = 0;
+
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++)
+    if (hi[k] - lo[k] > size) size = hi[k] - lo[k];
+  for (size_t p = 0; p < m->n_patch; p++) {
+    const struct vg_patch *at = m->patch + p;
+    double extent;
+    int axis;
+
+    if (at->bc != 1 || at->bc_fun3d != 3000) continue;
+    axis = thin_axis(m, p, &extent);
+    if (!(extent > 0 && extent <= NEARLY_PLANE * size)) continue;
+    vg_note(notes,
+            "patch %d (%s) is a symmetry plane (1), but its points deviate by "
+            "%.2g in %c, more than 1e-9 of the mesh: FUN3D's code is that of a "
+            "slip wall, 3000, instead of %d; move the points into the plane",
+            at->id, at->name, extent, "xyz"[axis], 6661 + axis);
+  }
 }
