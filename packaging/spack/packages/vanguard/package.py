@@ -2,28 +2,40 @@
 """Spack recipe. To use it from these sources:
 
     spack repo add packaging/spack
+    spack install vanguard               # the release
+    spack install vanguard@main +cad +portal
     spack dev-build vanguard@main        # in the top folder of the sources
+
+The sources come from the repository that contains this file.
 """
+import os
+
 from spack.package import *
+
+TOP = os.path.abspath(os.path.join(os.path.dirname(__file__), *[os.pardir] * 4))
 
 
 class Vanguard(CMakePackage):
     """Parallel unstructured mesh generator for aerodynamics: viscous layers on
     walls, tetrahedra elsewhere, on threads and MPI ranks."""
 
+    homepage = "file://" + os.path.join(TOP, "README.md")
+    git = "file://" + TOP
+
     license("LGPL-3.0-or-later", checked_by="vanguard")
 
     version("main", branch="main")
+    version("0.2.0", tag="v0.2.0")
 
     variant("mpi", default=True, description="Runs on several processes")
     variant("metis", default=True,
             description="Other decompositions, partitions for solvers")
     variant("hdf5", default=True, description="CGNS files")
-    variant("cad", default=False, description="STEP, IGES and BREP files")
+    variant("cad", default=True, description="STEP, IGES and BREP files")
     variant("tetgen", default=False,
             description="Helper program with TetGen (AGPL)")
     variant("wrap", default=False, description="Helper program with CGAL (GPL)")
-    variant("portal", default=False, description="vanguard serve")
+    variant("portal", default=True, description="vanguard serve")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
