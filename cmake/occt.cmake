@@ -20,12 +20,15 @@ vg_part(VG_CAD "STEP, IGES and BREP files, with Open CASCADE"
 set_target_properties(vg_io_occt PROPERTIES EXCLUDE_FROM_ALL ON)
 if(VG_CAD)
   set(VG_CAD_LIBRARY libvanguard-cad.so.0)
-  # The version in the names of Debian's packages, for messages.
-  get_filename_component(occt_file ${VG_OCCT_STEP} REALPATH)
-  string(REGEX REPLACE ".*\\.so\\.([0-9]+\\.[0-9]+).*" "\\1" occt_version
-    ${occt_file})
+  # The version, and the beginning of it in the names of Debian's packages.
+  file(STRINGS ${VG_OCCT_INCLUDE}/Standard_Version.hxx occt_version
+    REGEX "define +OCC_VERSION_COMPLETE")
+  string(REGEX REPLACE ".*\"(.*)\".*" "\\1" occt_version "${occt_version}")
+  string(REGEX REPLACE "^([0-9]+\\.[0-9]+).*" "\\1" occt_package
+    "${occt_version}")
   target_compile_definitions(vg_io_cad PRIVATE
-    VG_CAD_LIBRARY="${VG_CAD_LIBRARY}" VG_OCCT_VERSION="${occt_version}")
+    VG_CAD_LIBRARY="${VG_CAD_LIBRARY}" VG_OCCT_VERSION="${occt_version}"
+    VG_OCCT_PACKAGE="${occt_package}")
   target_compile_options(vg_io_occt PRIVATE ${VG_NO_CXX_RUNTIME})
   target_include_directories(vg_io_occt SYSTEM PRIVATE ${VG_OCCT_INCLUDE})
 endif()

@@ -74,7 +74,7 @@ static inline int vg_no_mpi_text(char *to, int *n, const char *text)
                               "this build has no MPI (it was configured "     \
                               "with VG_MPI=OFF); run it without a launcher"))
 #define MPI_Get_library_version(text, n)                                       \
-  vg_no_mpi_text(text, n, "none (VG_MPI=OFF)")
+  vg_no_mpi_text(text, n, "not in this build (VG_MPI=OFF)")
 #define MPI_Comm_f2c(handle) ((MPI_Comm)(handle))
 #define MPI_Comm_rank(comm, at) ((void)(comm), vg_no_mpi_set(at, 0))
 #define MPI_Comm_size(comm, at) ((void)(comm), vg_no_mpi_set(at, 1))

@@ -15,6 +15,8 @@ struct vg_library {
   char version[112];
 };
 
+#define VG_NOT_IN_BUILD "not in this build"
+
 void vg_library_mpi(struct vg_library *out);   /* base/comm.c */
 void vg_library_hwloc(struct vg_library *out); /* base/comm_cores.c */
 

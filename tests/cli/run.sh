@@ -63,8 +63,8 @@ needs() {
   for part; do
     case $part in
       tetgen | wrap) [[ $parts != *"vanguard-$part not found"* ]] ;;
-      metis) [[ $parts != *"METIS    none"* ]] ;;
-      mpi) [[ $parts != *"MPI      none"* ]] ;;
+      metis) [[ ! $parts =~ METIS\ +not\ in ]] ;;
+      mpi) [[ ! $parts =~ MPI\ +not\ in ]] ;;
     esac || skip "built without $part"
   done
 }

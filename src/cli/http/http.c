@@ -68,6 +68,20 @@ static vg_status load(struct library *lib, struct vg_error *err)
                  ", which was not found; install libmicrohttpd12");
 }
 
+void vg_library_microhttpd(struct vg_library *out)
+{
+  void *library = dlopen(VG_MICROHTTPD, RTLD_NOW | RTLD_LOCAL);
+  __typeof__(MHD_get_version) *ask = library
+                                     ? (__typeof__(MHD_get_version) *)
+                                         dlsym(library, "MHD_get_version")
+                                     : NULL;
+
+  out->name = "libmicrohttpd";
+  snprintf(out->version, sizeof out->version, "%.100s",
+           ask ? ask() : VG_MICROHTTPD " was not found");
+  if (library) dlclose(library);
+}
+
 /* --- requests ------------------------------------------------------------ */
 
 static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind,

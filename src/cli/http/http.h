@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/library.h"
 #include "cli/http/archive.h"
 #include "cli/http/fields.h"
 #include "cli/http/upload.h"
@@ -80,5 +81,8 @@ vg_status vg_http_connect(struct vg_http *http, int fd, struct vg_error *err);
 /** Wait for events for at most the given time and handle them. */
 vg_status vg_http_step(struct vg_http *http, int milliseconds,
                        struct vg_error *err);
+
+/** The library is loaded for this. */
+void vg_library_microhttpd(struct vg_library *out);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Stub of cli/http/http.h for builds without libmicrohttpd. */
+#include <string.h>
 #include <unistd.h>
 
 #include "cli/http/http.h"
@@ -9,6 +10,12 @@ static vg_status absent(struct vg_error *err)
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "this build has no portal (CMake option VG_PORTAL); install "
                  "libmicrohttpd-dev, then configure and build again");
+}
+
+void vg_library_microhttpd(struct vg_library *out)
+{
+  out->name = "libmicrohttpd";
+  strcpy(out->version, VG_NOT_IN_BUILD " (VG_PORTAL=OFF)");
 }
 
 vg_status vg_http_open(int fd, const struct vg_http_handler *h,

@@ -52,6 +52,16 @@ int vg_cad_is_built(void)
 #endif
 }
 
+void vg_library_occt(struct vg_library *out)
+{
+  out->name = "Open CASCADE";
+#ifdef VG_CAD_LIBRARY
+  strcpy(out->version, VG_OCCT_VERSION ", by " VG_CAD_LIBRARY);
+#else
+  strcpy(out->version, VG_NOT_IN_BUILD " (VG_CAD=OFF)");
+#endif
+}
+
 /* --- code that runs in the child ----------------------------------------- */
 
 #ifdef VG_CAD_LIBRARY
@@ -75,8 +85,8 @@ static void explain(const char *why, char text[TEXT_MAX])
   else if (!strstr(why, VG_CAD_LIBRARY))
     snprintf(text, TEXT_MAX,
              "CAD files need Open CASCADE, which was not found (%.400s); "
-             "install libocct-data-exchange-" VG_OCCT_VERSION
-             " and libocct-ocaf-" VG_OCCT_VERSION,
+             "install libocct-data-exchange-" VG_OCCT_PACKAGE
+             " and libocct-ocaf-" VG_OCCT_PACKAGE,
              why);
   else
     snprintf(text, TEXT_MAX,

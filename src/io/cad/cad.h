@@ -18,6 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/library.h"
 #include "base/stop.h"
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
@@ -106,6 +107,9 @@ struct vg_cad; /* a child process with a model */
 
 /** Returns 1 if this build can read CAD. */
 int vg_cad_is_built(void);
+
+/** Version with which the library for CAD was built. */
+void vg_library_occt(struct vg_library *out);
 
 /** Start a child. VG_ERR_UNSUPPORTED in a build without Open CASCADE;
  * VG_ERR_MEMORY if the system refuses a process. */

@@ -2,9 +2,17 @@
 /* Stub of io/cgns/cgns_tree.h in a build without the HDF5 library. */
 #include "io/cgns/cgns_tree.h"
 
+#include <string.h>
+
 int vg_cgns_tree_is_built(void)
 {
   return 0;
+}
+
+void vg_library_hdf5(struct vg_library *out)
+{
+  out->name = "HDF5";
+  strcpy(out->version, VG_NOT_IN_BUILD " (VG_HDF5=OFF)");
 }
 
 static vg_status absent(struct vg_error *err)

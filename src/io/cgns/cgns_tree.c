@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <hdf5.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,15 @@ struct vg_cgns_tree {
 int vg_cgns_tree_is_built(void)
 {
   return 1;
+}
+
+void vg_library_hdf5(struct vg_library *out)
+{
+  unsigned v[3] = { 0, 0, 0 };
+
+  H5get_libversion(&v[0], &v[1], &v[2]);
+  out->name = "HDF5";
+  snprintf(out->version, sizeof out->version, "%u.%u.%u", v[0], v[1], v[2]);
 }
 
 /* --- a virtual file driver of HDF5 on a store --- */

@@ -24,5 +24,5 @@ vg_status vg_graph_part(const struct vg_graph *g,
 void vg_library_metis(struct vg_library *out)
 {
   out->name = "METIS";
-  strcpy(out->version, "none (VG_METIS=OFF)");
+  strcpy(out->version, VG_NOT_IN_BUILD " (VG_METIS=OFF)");
 }

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -75,6 +76,25 @@ static __typeof__(LAPACKE_dgels) *load_dgels(void)
 
   return library ? (__typeof__(LAPACKE_dgels) *)dlsym(library, "LAPACKE_dgels")
                  : NULL;
+}
+
+void vg_library_lapacke(struct vg_library *out)
+{
+  void *library = dlopen(VG_LAPACKE, RTLD_NOW | RTLD_LOCAL);
+  lapack_int v[3] = { 0, 0, 0 };
+  __typeof__(LAPACKE_ilaver) *ask = library ? (__typeof__(LAPACKE_ilaver) *)
+                                                dlsym(library, "LAPACKE_ilaver")
+                                            : NULL;
+
+  out->name = "LAPACKE";
+  if (ask) {
+    ask(&v[0], &v[1], &v[2]);
+    snprintf(out->version, sizeof out->version, "%d.%d.%d", (int)v[0],
+             (int)v[1], (int)v[2]);
+  } else {
+    snprintf(out->version, sizeof out->version,
+             library ? "of unknown version" : VG_LAPACKE " was not found");
+  }
 }
 
 /* Fits both rates. dgels overwrites both arrays, so it gets copies. -1: no

@@ -5,6 +5,7 @@
 #ifndef VG_PARTITION_MODEL_RATES_H
 #define VG_PARTITION_MODEL_RATES_H
 
+#include "base/library.h"
 #include "partition/model/forecast.h"
 
 /** Fit for one kind: seconds of one core = cell * cells + face * faces. */
@@ -33,5 +34,8 @@ vg_status vg_rates_of(const struct vg_spans *s,
  * those of a fit that had enough tasks; joins and repairs are unchanged. */
 void vg_rates_replace(struct vg_rates *r,
                       const struct vg_rate_fit fit[VG_RATE_FITS]);
+
+/** The library is loaded for this. */
+void vg_library_lapacke(struct vg_library *out);
 
 #endif

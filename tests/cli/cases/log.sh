@@ -46,5 +46,11 @@ vanguard --version --verbose
 exits 0
 says out "vanguard 0.2.0"
 says out "vanguard-tetgen"
-grep -qE '^  hwloc    [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no hwloc"
+# Every library has its version, or is not in this build.
+for library in MPI METIS TetGen CGAL "Open CASCADE" HDF5 hwloc xxHash jansson \
+  zlib LAPACKE libmicrohttpd glibc; do
+  grep -qE "^  $library +([^ ].*)?([0-9]+\.[0-9]+|not in this build|not found)" \
+    out || fail "no $library"
+done
+grep -qE '^  hwloc +[0-9]+\.[0-9]+\.[0-9]+$' out || fail "no hwloc"
 grep -qE '^source   [0-9a-f]{64}$' out || fail "no digest of the source"
