@@ -10,7 +10,7 @@
 #include "cli/commands/commands.h"
 #include "cli/http/http.h"
 #include "io/cad/cad.h"
-#include "io/cgns/cgns_tree.h"
+#include "io/cgns/cgns.h"
 #include "io/stream/stream.h"
 #include "partition/graph/graph.h"
 #include "partition/model/rates.h"

@@ -14,6 +14,7 @@
 #ifndef VG_IO_CGNS_CGNS_H
 #define VG_IO_CGNS_CGNS_H
 
+#include "base/library.h"
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
@@ -22,6 +23,8 @@
 
 /** Returns 1 in a build with HDF5. */
 int vg_cgns_is_built(void);
+
+void vg_library_hdf5(struct vg_library *out);
 
 /** Read a surface, or a volume mesh with its boundary; gzip'd input is
  * accepted. All zones of all bases with the highest cell dimension are joined;

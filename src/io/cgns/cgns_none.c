@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Stub of io/cgns/cgns_tree.h in a build without the HDF5 library. */
+#include "io/cgns/cgns.h"
 #include "io/cgns/cgns_tree.h"
 
 #include <string.h>

@@ -2,6 +2,7 @@
 /* CGNS nodes in HDF5; see io/cgns/cgns_tree.h and, in the standard, "CGNS/HDF5
  * file mapping". Files are reproducible: HDF5 records no times, and space for
  * arrays is reserved at once. */
+#include "io/cgns/cgns.h"
 #include "io/cgns/cgns_tree.h"
 
 #include <assert.h>

@@ -12,7 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/library.h"
 #include "base/status.h"
 #include "io/cgns/cgns_store.h"
 #include "io/stream/stream.h"
@@ -37,8 +36,6 @@ struct vg_cgns_node {
 struct vg_cgns_tree;
 
 int vg_cgns_tree_is_built(void);
-
-void vg_library_hdf5(struct vg_library *out);
 
 /* --- writing --- */
 

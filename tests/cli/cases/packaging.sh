@@ -9,8 +9,8 @@ says "$recipe" "version: \"$version\""
 says "$package" "version(\"$version\", tag=\"v$version\")"
 says "$top/CITATION.cff" "version: $version"
 
-# Every part of the build that is an option is a variant of Spack; conda has no
-# part switched off, and what it switches on is a requirement.
+# Every part of the build that is an option is a variant of Spack. The conda
+# package switches no part off, and requires the libraries of all parts.
 grep -rhoE 'vg_part\((VG_[A-Z0-9]+)' "$top/CMakeLists.txt" "$top/src" \
   "$top/cmake" "$top/helpers" --include=CMakeLists.txt --include='*.cmake' |
   sed 's/.*(VG_//' | tr '[:upper:]' '[:lower:]' | sort -u >parts
