@@ -85,13 +85,21 @@ vg_status vg_hidden_make(const char *dir, char **path, int *lock,
   return VG_ERR_IO;
 }
 
+static int remove_one(const char *path, const struct stat *info, int type,
+                      struct FTW *at)
+{
+  (void)info, (void)type, (void)at;
+  return remove(path);
+}
+
+static int remove_all(const char *path)
+{
+  return nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+}
+
 void vg_hidden_remove(const char *path, int lock)
 {
-  char *file = lock_path(path);
-
-  if (file) unlink(file);
-  free(file);
-  rmdir(path);
+  remove_all(path);
   if (lock >= 0) close(lock);
 }
 
@@ -110,13 +118,6 @@ static int measure(const char *path, const struct stat *info, int type,
   if (S_ISREG(info->st_mode)) found.bytes += (uint64_t)info->st_size;
   if (info->st_mtime > found.newest) found.newest = info->st_mtime;
   return 0;
-}
-
-static int remove_one(const char *path, const struct stat *info, int type,
-                      struct FTW *at)
-{
-  (void)info, (void)type, (void)at;
-  return remove(path);
 }
 
 static int is_own_host(int lock)
@@ -148,8 +149,7 @@ static void sweep_locked(const char *path, int lock, struct vg_notes *notes)
   }
   if (!is_own_host(lock) && time(NULL) - found.newest < IDLE_S)
     keep(notes, path, "that run was on another host");
-  else if (nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS))
-    keep(notes, path, "it could not be removed");
+  else if (remove_all(path)) keep(notes, path, "it could not be removed");
   else
     vg_note(notes,
             "removed %s (%.1f MB), the incomplete files of a run that was "

@@ -18,7 +18,7 @@
 vg_status vg_hidden_make(const char *dir, char **path, int *lock,
                          struct vg_error *err);
 
-/** Remove an otherwise empty folder of vg_hidden_make, and its lock. */
+/** Remove a folder of vg_hidden_make with its content and its lock. */
 void vg_hidden_remove(const char *path, int lock);
 
 /** Remove the folders in `dir` of runs that were killed, and note each of them

@@ -31,15 +31,7 @@
 
 static void remove_temp_dir(struct vg_outputs *o)
 {
-  char *path;
-
   if (!o->temp_dir) return;
-  for (size_t i = 0; i < o->n_file && !o->is_guest; i++) {
-    path = vg_outputs_temp_path(o, o->file[i].suffix);
-    if (path && o->file[i].is_case) vg_foam_remove(path);
-    else if (path) unlink(path);
-    free(path);
-  }
   if (!o->is_guest) {
     vg_hidden_remove(o->temp_dir, o->lock);
     vg_display_temporary(NULL);
