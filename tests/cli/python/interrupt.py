@@ -206,6 +206,35 @@ def test_write(folder):
     assert mesh.quality["volume"] > 0.99
 
 
+def test_cancelled_write(folder):
+    """write() can be cancelled: one of these attempts is stopped."""
+    mesh = job_of(10, hmax=0.03).mesh()
+    for i in range(50):
+        part = os.path.join(folder, "cancelled%d" % i)
+        os.mkdir(part)
+        ends = threading.Event()
+
+        def cancel():
+            while not ends.wait(0.001):
+                mesh._job.cancel()
+
+        thread = threading.Thread(target=cancel)
+        thread.start()
+        try:
+            mesh.write(os.path.join(part, "cube"), "vtu,b8.ugrid,meshb")
+        except vanguard.Stopped as error:
+            assert "nothing was written" in str(error), error
+            assert os.listdir(part) == []
+            break
+        finally:
+            ends.set()
+            thread.join()
+    else:
+        raise AssertionError("no write was stopped")
+    mesh.write(os.path.join(part, "cube"), "vtu")
+    assert "cube.vtu" in os.listdir(part)
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "--child":
         mesh_until_interrupt(sys.argv[2])
