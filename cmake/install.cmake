@@ -52,6 +52,15 @@ install(PROGRAMS share/slurm/vanguard.sbatch
 install(PROGRAMS share/drivers/vanguard_cases.py
   share/drivers/vanguard_solvers.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers COMPONENT python3)
+# The drivers are modules, and programs on the PATH under the names of programs.
+file(RELATIVE_PATH drivers ${CMAKE_INSTALL_FULL_BINDIR}
+  ${CMAKE_INSTALL_FULL_DATADIR}/vanguard/drivers)
+foreach(driver cases solvers)
+  set(link ${CMAKE_BINARY_DIR}/drivers/vanguard-${driver})
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/drivers)
+  file(CREATE_LINK ${drivers}/vanguard_${driver}.py ${link} SYMBOLIC)
+  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT python3)
+endforeach()
 install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard
   COMPONENT program)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
@@ -65,7 +74,9 @@ install(FILES tests/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests
   COMPONENT doc)
 install(DIRECTORY verification DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT doc FILES_MATCHING PATTERN "*.md")
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
+  PATTERN "*.py" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 # Debian's Python finds modules in this folder; other systems need PYTHONPATH.
 set(python ${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages)

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
 """Meshes a wing-like body given as arrays. Run it as a script, or as a notebook
 in editors that use `# %%` as cell marks (VS Code, Jupytext, Spyder)."""

@@ -17,7 +17,7 @@ A case is a folder: a copy of the surface with its companions, the deck as JSON
 log in run.log and the run directory run.store, from which a run that was stopped
 is resumed. docs/reference/programs.md has more.
 
-As a program: vanguard_cases.py make|submit|collect|state --help
+As a program: vanguard-cases make|submit|collect|state --help
 """
 import argparse
 import csv
@@ -32,7 +32,7 @@ import time
 
 # Files in the folder of a surface that belong to its project.
 COMPANIONS = (".mapbc", ".tags", ".bc", ".d3m", ".front")
-HERE = os.path.dirname(os.path.abspath(__file__))
+HERE = os.path.dirname(os.path.realpath(__file__))   # bin has links
 
 
 class CaseError(Exception):
@@ -434,7 +434,7 @@ def main(words=None):
             print("  ".join(f"{k}={v}" for k, v in row.items()))
         return 1 if any(row["state"] == "failed" for row in rows) else 0
     except CaseError as error:
-        print(f"vanguard_cases: {error}", file=sys.stderr)
+        print(f"vanguard-cases: {error}", file=sys.stderr)
         return 1
 
 

@@ -4,9 +4,9 @@
 complete enough to start the solver. Needs the standard library only.
 
     vanguard mesh -p wing --cells mixed --write su2,foam --out results
-    vanguard_solvers.py su2 results/wing.report.json --mach 0.3 --alpha 2 \\
+    vanguard-solvers su2 results/wing.report.json --mach 0.3 --alpha 2 \\
         --reynolds 5e6 --length 1
-    vanguard_solvers.py openfoam results/wing.report.json --alpha 2 --speed 50 \\
+    vanguard-solvers openfoam results/wing.report.json --alpha 2 --speed 50 \\
         --reynolds 5e6 --length 1
 
 The conditions of the patches are those of the report. su2 writes STEM.cfg next
@@ -137,7 +137,7 @@ def _su2_text(mesh, flow):
                 " )"] if found else []
 
     lines = [
-        f"% {mesh.title}: a first iteration, written by vanguard_solvers.py",
+        f"% {mesh.title}: a first iteration, written by vanguard-solvers",
         f"SOLVER= {'RANS' if viscous else 'EULER'}",
         *(["KIND_TURB_MODEL= SA"] if viscous else []),
         f"MACH_NUMBER= {flow.mach:.10g}",
@@ -358,7 +358,7 @@ def main(words=None):
         print(write(Mesh(report), Flow(**a)))
         return 0
     except SolverError as error:
-        print(f"vanguard_solvers: {error}", file=sys.stderr)
+        print(f"vanguard-solvers: {error}", file=sys.stderr)
         return 1
 
 

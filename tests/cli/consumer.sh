@@ -119,6 +119,20 @@ env -u LD_LIBRARY_PATH "$folder/by_pkg_config" ||
 
 "$prefix/bin/vanguard" --version
 
+# --- the drivers, found by the PATH, also through links ---
+
+for driver in vanguard-cases vanguard-solvers; do
+  usage=$(PATH="$prefix/bin:$PATH" "$driver" --help)
+  [[ $usage == "usage: $driver "* ]] || fail "$driver: $usage"
+done
+"$prefix/bin/vanguard" demo box --cells 1000 --out driven >/dev/null
+env -u VANGUARD "$prefix/bin/vanguard-cases" make driven/case \
+  driven/box.lb8.ugrid --set hmax=1
+env -u VANGUARD "$prefix/bin/vanguard-cases" submit driven/case >/dev/null
+find "$prefix/share/doc" -name '*.py' ! -perm -u+x | while read -r script; do
+  fail "$script has no run bit"
+done
+
 # --- the plug-in: a mesher that the program loads ---
 
 # shellcheck disable=SC2046 # a list of words
@@ -151,7 +165,7 @@ else
   unset PYTHONPATH
   if "$python" -c 'import venv, ensurepip, setuptools, wheel' 2>/dev/null; then
     "$python" -m venv --system-site-packages "$folder/venv"
-    "$folder/venv/bin/pip" -q install --no-build-isolation --no-deps \
+    "$folder/venv/bin/pip" -q install --no-index --no-build-isolation \
       "$here/../.." >/dev/null
     found=$(cd / && PATH="$prefix/bin:$PATH" "$folder/venv/bin/python" -c \
       'import vanguard; print(vanguard.Job() and vanguard._find())')

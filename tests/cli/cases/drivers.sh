@@ -3,7 +3,7 @@
 # programs of the same names), stopped, resumed and collected.
 command -v python3 >/dev/null || skip "python3 is not installed"
 export VANGUARD=$program PYTHONDONTWRITEBYTECODE=1
-driver="python3 $here/../../share/drivers/vanguard_cases.py"
+driver=$here/../../share/drivers/vanguard_cases.py
 vanguard demo box --cells 3000 --out in
 
 # cases ARGS...: the driver, as `vanguard`.
@@ -11,6 +11,14 @@ cases() {
   $driver "$@" >out 2>err
   status=$?
 }
+
+# --- every script can be started by its name ---
+for script in "$here"/../../examples/{,*/}*.py "$here"/../../share/drivers/*.py
+do
+  [ -x "$script" ] || fail "$script has no run bit"
+  [ "$(head -1 "$script")" = "#!/usr/bin/env python3" ] ||
+    fail "$script does not name its interpreter"
+done
 
 # --- cases that cannot be made: a message, and no folder ---
 cases make runs/a in/nosuch.stl

@@ -2,7 +2,7 @@
 # Complete cases for SU2 and OpenFOAM: SU2's by its grammar and its markers,
 # OpenFOAM's by a first iteration of simpleFoam, if it is installed.
 command -v python3 >/dev/null || skip "python3 is not installed"
-solvers="python3 $here/../../share/drivers/vanguard_solvers.py"
+solvers=$here/../../share/drivers/vanguard_solvers.py
 flow="--reynolds 1e6 --length 1 --alpha 2"
 vanguard demo wing-half --cells 30000 --out in
 vanguard mesh -q -p in/wing-half --cells mixed --scale 2 --layer-count 6 \
