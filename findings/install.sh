@@ -11,9 +11,10 @@ install() {
     [ "$(dpkg-query -W -f '${Version}' "${package%%=*}" 2>/dev/null || :)" = \
       "${package#*=}" ] || missing+=("$package")
   done
-  [ ${#missing[@]} = 0 ] ||
-    apt-get -qq -o DPkg::Lock::Timeout=600 install -y --no-install-recommends \
-      --allow-downgrades "${missing[@]}" >/dev/null
+  [ ${#missing[@]} != 0 ] || return 0
+  apt-get -qq update
+  apt-get -qq -o DPkg::Lock::Timeout=600 install -y --no-install-recommends \
+    --allow-downgrades "${missing[@]}" >/dev/null
 }
 
 work() {
