@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "api/job.h"
+#include "base/helper/helper.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
 vg_status vg_job_meshed(vanguard_job *job)
 {
@@ -309,7 +311,13 @@ vanguard_status vanguard_write(vanguard_job *job, const char *stem,
   atomic_store(&job->show.asked, 0);
   st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
   if (st >= 0 && !job->run.rank) vg_outputs_sweep(&o, &job->problem.notes);
-  if (st >= 0) st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
+  if (st >= 0) {
+    void *before = vg_thread_data();
+
+    vg_helper_set_folder(job->problem.asked.helpers);
+    st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
+    vg_thread_data_set(before);
+  }
   vg_outputs_release(&o);
   return vg_job_status(st);
 }

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "api/job.h"
+#include "base/helper/helper.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -135,6 +137,8 @@ static char *text_report(const vanguard_job *job)
 
 static vg_status make_report(vanguard_job *job, int is_json)
 {
+  void *before = vg_thread_data();
+
   if (job->is_refused) return VG_ERR_USAGE;
   if (!job->times.start)
     return vg_fail(&job->err, VG_ERR_USAGE,
@@ -143,7 +147,11 @@ static vg_status make_report(vanguard_job *job, int is_json)
                    "been called");
   free(job->report);
   if (job->run.rank) job->report = strdup("");
-  else job->report = is_json ? json_report(job) : text_report(job);
+  else {
+    vg_helper_set_folder(job->problem.asked.helpers);
+    job->report = is_json ? json_report(job) : text_report(job);
+    vg_thread_data_set(before);
+  }
   return job->report ? VG_OK : vg_fail_memory(&job->err, "the report");
 }
 

@@ -8,6 +8,7 @@
 
 #include "api/job.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "run/input/sizes.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
@@ -236,10 +237,14 @@ static vanguard_status run(vanguard_job *job, enum goal goal,
 {
   VG_JOB_CALL(job);
   vg_status st = vg_job_usable(job);
+  void *before; /* the helpers of this thread: a callback of another job may
+                   have called us */
 
   if (st < 0) return vg_job_status(st);
   vg_job_begin(job, progress, user);
+  before = vg_thread_data();
   st = make(job, goal);
+  vg_thread_data_set(before);
   describe_surface(job);
   if (st < 0) job->failure = job->err;
   job->times.total = vg_display_now() - job->times.start;

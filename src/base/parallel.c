@@ -20,8 +20,21 @@ struct loop {
 struct worker {
   struct loop *loop;
   int number;
+  void *data; /* vg_thread_data of the thread that started this one */
   pthread_t thread;
 };
+
+static _Thread_local void *thread_data;
+
+void *vg_thread_data(void)
+{
+  return thread_data;
+}
+
+void vg_thread_data_set(void *data)
+{
+  thread_data = data;
+}
 
 int vg_cores(void)
 {
@@ -41,6 +54,7 @@ static void *work(void *argument)
   struct loop *l = w->loop;
   size_t n_chunk = (l->n - 1) / l->grain + 1, c;
 
+  thread_data = w->data;
   while ((c = atomic_fetch_add(&l->next, 1)) < n_chunk) {
     size_t first = c * l->grain, left = l->n - first;
 
@@ -64,9 +78,11 @@ void vg_parallel_for(int threads, size_t n, size_t grain, vg_loop_body body,
   if (threads > WORKERS_MAX) threads = WORKERS_MAX;
   if ((size_t)threads > (n - 1) / loop.grain + 1)
     threads = (int)((n - 1) / loop.grain + 1);
-  w[0] = (struct worker){ .loop = &loop };
+  w[0] = (struct worker){ .loop = &loop, .data = thread_data };
   for (; started < threads; started++) {
-    w[started] = (struct worker){ .loop = &loop, .number = started };
+    w[started] = (struct worker){ .loop = &loop,
+                                  .number = started,
+                                  .data = thread_data };
     if (pthread_create(&w[started].thread, NULL, work, &w[started])) break;
   }
   work(&w[0]);

@@ -22,6 +22,12 @@ typedef void (*vg_loop_body)(void *context, size_t first, size_t end,
 void vg_parallel_for(int threads, size_t n, size_t grain, vg_loop_body body,
                      void *context);
 
+/** Data of the calling thread, NULL at first, for functions that are too deep
+ * in the call tree to receive it. The threads of vg_parallel_for and of the
+ * task scheduler inherit it from the thread that starts them. */
+void *vg_thread_data(void);
+void vg_thread_data_set(void *data);
+
 /** Number of cores that this process may use (its affinity), at least 1. */
 int vg_cores(void);
 

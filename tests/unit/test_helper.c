@@ -3,6 +3,7 @@
  * each is refused or ended with its reason, and the tests go on. The helpers
  * here are shell scripts; cli/cases/helpers.sh uses the real ones. */
 #define _GNU_SOURCE
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,6 +16,7 @@
 #include <cmocka.h>
 
 #include "base/helper/helper.h"
+#include "base/parallel.h"
 #include "core/recover/cdt_tetgen.h"
 
 #define FOLDER VG_TMP_DIR "/helpers of a test"
@@ -235,13 +237,60 @@ static void replaced(void **state)
   job_status(VG_ERR_IO);
 }
 
+static void look(void *context, size_t first, size_t end, int worker)
+{
+  int *found = context;
+  struct vg_helper h;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    vg_helper_find(VG_HELPER_TETGEN, &h);
+    found[i] = h.is_found;
+  }
+}
+
+enum { N_LOOK = 64 };
+
+/* A run in another thread, which has another folder. */
+static void *run_elsewhere(void *context)
+{
+  vg_helper_set_folder(VG_TMP_DIR "/no such folder");
+  vg_parallel_for(3, N_LOOK, 1, look, context);
+  return NULL;
+}
+
+/* Two runs in one process: each has its own folder, in all of its threads. */
+static void each_run_has_its_folder(void **state)
+{
+  struct vg_helper_hello first = hello();
+  int here[N_LOOK], there[N_LOOK];
+  pthread_t thread;
+
+  (void)state;
+  put_helper(&first, sizeof first, "");
+  assert_int_equal(pthread_create(&thread, NULL, run_elsewhere, there), 0);
+  for (int k = 0; k < 20; k++) {
+    vg_parallel_for(3, N_LOOK, 1, look, here);
+    for (int i = 0; i < N_LOOK; i++) assert_true(here[i]);
+  }
+  assert_int_equal(pthread_join(thread, NULL), 0);
+  for (int i = 0; i < N_LOOK; i++) assert_false(there[i]);
+  vg_parallel_for(3, N_LOOK, 1, look, here);
+  for (int i = 0; i < N_LOOK; i++) assert_true(here[i]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(missing),        cmocka_unit_test(foreign),
-    cmocka_unit_test(not_executable), cmocka_unit_test(identified),
-    cmocka_unit_test(crashes),        cmocka_unit_test(wrong_answers),
-    cmocka_unit_test(hangs),          cmocka_unit_test(replaced),
+    cmocka_unit_test(each_run_has_its_folder),
+    cmocka_unit_test(missing),
+    cmocka_unit_test(foreign),
+    cmocka_unit_test(not_executable),
+    cmocka_unit_test(identified),
+    cmocka_unit_test(crashes),
+    cmocka_unit_test(wrong_answers),
+    cmocka_unit_test(hangs),
+    cmocka_unit_test(replaced),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

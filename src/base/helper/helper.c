@@ -13,6 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/parallel.h"
+
 #define START_SECONDS                                                          \
   60 /* limit for the first message, on slow file systems                      \
       */
@@ -25,10 +27,25 @@ static const struct {
   { "vanguard-wrap", "CGAL", "libcgal-dev", "VG_WRAP" },
 };
 
+/* A folder in which helpers were searched, and those that were found. Folders
+ * are never forgotten, so that threads can refer to them (vg_thread_data). */
+struct place {
+  struct place *next;
+  char folder[4096]; /* "": the default search */
+  struct vg_helper found[VG_HELPER_N];
+  int is_known[VG_HELPER_N];
+};
+
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static char folder[4096];
-static struct vg_helper found[VG_HELPER_N];
-static int is_known[VG_HELPER_N];
+static struct place anywhere; /* also the first of the list */
+
+/* The place of the calling thread. */
+static struct place *here(void)
+{
+  struct place *p = vg_thread_data();
+
+  return p ? p : &anywhere;
+}
 
 /* --- in the child --------------------------------------------------------- */
 
@@ -136,8 +153,8 @@ static int try_folder(const char *in, const char *below, struct vg_helper *h)
 }
 
 /* Find the file of a helper. */
-static int find_file(struct vg_helper *h, const char *package,
-                     const char *option)
+static int find_file(const char *folder, struct vg_helper *h,
+                     const char *package, const char *option)
 {
   static const char *const below[] = { "", VG_LIBEXEC_FROM_BIN,
                                        VG_LIBEXEC_FROM_LIB, "../bin" };
@@ -164,7 +181,8 @@ static int find_file(struct vg_helper *h, const char *package,
   return 0;
 }
 
-static void search(enum vg_helper_kind kind, struct vg_helper *h)
+static void search(const char *folder, enum vg_helper_kind kind,
+                   struct vg_helper *h)
 {
   struct vg_helper_hello hello;
   struct vg_child c;
@@ -175,7 +193,8 @@ static void search(enum vg_helper_kind kind, struct vg_helper *h)
   h->name = helper_names[kind].name;
   h->holds = helper_names[kind].holds;
   snprintf(h->identity, sizeof h->identity, "none");
-  if (!find_file(h, helper_names[kind].package, helper_names[kind].option))
+  if (!find_file(folder, h, helper_names[kind].package,
+                 helper_names[kind].option))
     return;
   wrong = start(h->path, h->name, NULL, &c, &l, &hello);
   if (wrong) {
@@ -193,22 +212,32 @@ static void search(enum vg_helper_kind kind, struct vg_helper *h)
 
 void vg_helper_set_folder(const char *to)
 {
+  struct place *p = &anywhere;
+
   assert(to);
+  if (!strcmp(here()->folder, to)) return;
   pthread_mutex_lock(&lock);
-  if (strcmp(folder, to) != 0) {
-    snprintf(folder, sizeof folder, "%s", to);
-    memset(is_known, 0, sizeof is_known);
+  while (strncmp(p->folder, to, sizeof p->folder - 1) != 0 && p->next)
+    p = p->next;
+  if (strncmp(p->folder, to, sizeof p->folder - 1) != 0) {
+    p->next = calloc(1, sizeof *p);
+    if (p->next) p = p->next;
+    snprintf(p->folder, sizeof p->folder, "%s", to);
   }
+  memset(p->is_known, 0, sizeof p->is_known);
   pthread_mutex_unlock(&lock);
+  vg_thread_data_set(p);
 }
 
 void vg_helper_find(enum vg_helper_kind kind, struct vg_helper *out)
 {
+  struct place *p = here();
+
   assert(kind < VG_HELPER_N && out);
   pthread_mutex_lock(&lock);
-  if (!is_known[kind]) search(kind, &found[kind]);
-  is_known[kind] = 1;
-  *out = found[kind];
+  if (!p->is_known[kind]) search(p->folder, kind, &p->found[kind]);
+  p->is_known[kind] = 1;
+  *out = p->found[kind];
   pthread_mutex_unlock(&lock);
 }
 

@@ -10,8 +10,10 @@
  * contains this code, the folder libexec/vanguard of the installation, and the
  * folder bin of a build tree.
  *
- * The folder and the helpers that were found are state of the process, as is
- * the child server. Meshes depend on the helpers: their identities belong to
+ * The folder belongs to the calling thread and to the threads that it starts
+ * (vg_thread_data), so that two runs in one process can have different ones.
+ * The helpers that were found are state of the process, as is the child server.
+ * Meshes depend on the helpers: their identities belong to
  * the digest of a job. */
 #ifndef VG_BASE_HELPER_H
 #define VG_BASE_HELPER_H
@@ -37,8 +39,9 @@ struct vg_helper {
                          a full stop */
 };
 
-/** Set the folder with the helpers; "": the default search. Affects calls that
- * follow. Threads: safe, but no helper may be in use. */
+/** Set the folder with the helpers for this thread and the threads that it
+ * starts later; "": the default search. If the folder changes, helpers are
+ * searched again. Threads: safe. */
 void vg_helper_set_folder(const char *folder);
 
 /** Find a helper and start it as a test. The result is kept until the folder

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "partition/engine/engine_parts.h"
 
 void vg_engine_lock(struct vg_engine *e)
@@ -175,13 +176,14 @@ static vg_status start(struct vg_engine *e, int threads, struct vg_error *err)
     struct vg_worker *w = &e->worker[threads];
 
     w->e = e;
+    w->data = vg_thread_data();
     bad = pthread_create(&w->thread, NULL, vg_work_handler, w);
     e->handler_index = bad ? 0 : threads;
   }
   for (; n < threads && !bad; n++) {
     struct vg_worker *w = &e->worker[n];
 
-    *w = (struct vg_worker){ .e = e, .number = n };
+    *w = (struct vg_worker){ .e = e, .number = n, .data = vg_thread_data() };
     if (pthread_create(&w->thread, NULL, vg_work_thread, w)) break;
   }
   e->threads = n;

@@ -181,6 +181,7 @@ struct vg_worker {
   double loops, helped;     /* Processor time in s that its task spent in loops,
                                and the part of it in other threads. */
   int in_loop;              /* 1: a loop body is running. */
+  void *data;               /* vg_thread_data of the thread that started it. */
   pthread_t thread;
 };
 

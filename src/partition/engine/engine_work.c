@@ -228,6 +228,7 @@ void *vg_work_thread(void *worker)
   struct vg_engine *e = w->e;
   struct vg_task_state *j;
 
+  vg_thread_data_set(w->data);
   vg_loop_enter(w);
   vg_engine_lock(e);
   while (!e->over) {
@@ -254,8 +255,10 @@ void *vg_work_thread(void *worker)
 
 void *vg_work_handler(void *worker)
 {
-  struct vg_engine *e = ((struct vg_worker *)worker)->e;
+  struct vg_worker *w = worker;
+  struct vg_engine *e = w->e;
 
+  vg_thread_data_set(w->data);
   vg_engine_lock(e);
   while (!e->over) {
     if (e->ended.first && !e->in_done) end_one(e);

@@ -733,6 +733,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   int bad = 0;
 
   r->notes = &p->notes;
+  vg_helper_set_folder(p->asked.helpers);
   vg_mesh_move(&r->surface, surface);
   r->side = VG_SIDE_DEFINED; /* As the interface defines it. */
   VG_TRY(begin(&p->asked, r, err));
