@@ -83,7 +83,9 @@ static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
   r->tolerance = j->jag * j->o->scale * fmax(j->o->scale, 1);
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
   if (e.is_domain) {
-    j->far = fmin(r->h_max, H_MAX * r->length);
+    j->far = j->o->is_requested && j->o->h_max > 0
+             ? r->h_max
+             : fmin(r->h_max, H_MAX * r->length);
     j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
     if (!j->cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
     for (size_t t = 0; t < m->n_tri; t++)

@@ -36,6 +36,9 @@ struct vg_remesh_options {
   double h_min, h_max;  /* Bounds of the size. 0: 2e-4 and 0.02 of the length of
                            the body; on the outer boundary of a whole domain
                            h_max is 0.04 of the length of the domain. */
+  int is_requested;     /* 1: h_max was requested for the surface and applies to
+                           bodies inside a given domain, too. 0: their sizes
+                           are at most 0.02 of their length. */
   double growth;        /* > 1; growth of sizes along the surface. */
   size_t n_source;      /* Sources of the sizing field, the same as for the
                            volume. */

@@ -245,6 +245,7 @@ static vg_status stretch_added(struct vg_boundary *b, size_t n_own,
   o.tolerance = FARFIELD_TOLERANCE * vg_distance(lo, hi);
   o.scale = 1; /* `spacing` and the field are scaled */
   o.h_max = spacing > 0 ? spacing : vg_distance(lo, hi);
+  o.is_requested = 0; /* `spacing` concerns the farfield alone. */
   o.h_min = fmin(o.h_min, o.h_max);
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };

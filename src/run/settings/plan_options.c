@@ -127,6 +127,7 @@ struct vg_remesh_options vg_options_remesh(const struct vg_settings *s)
   o.per_turn = s->per_turn;
   o.h_min = s->hmin;
   o.h_max = largest_edge(s);
+  o.is_requested = s->surface_size > 0;
   o.growth = s->growth;
   o.scale = s->scale;
   o.n_source = s->n_source;

@@ -150,7 +150,7 @@ VG_ROW(REAL, plain, surface_size, "surface_size", 0,
   .is_common = 1,
   .use = VG_USE_REMESH, LENGTH, .help = "Largest edge of the remeshed "
   "surface; 0: hmax, or 0.02 of the body length (for an outer boundary 0.04 "
-  "of its own length)")
+  "of its own length; for bodies inside it the smaller one)")
 VG_ROW(REAL, plain, feature_angle, "feature_angle", remesh.feature_angle,
   .use = VG_USE_REMESH, .lo = 5, .hi = 170, .unit = "degrees",
   .help = "The remeshed surface preserves edges whose two faces differ by "
