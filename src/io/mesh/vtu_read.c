@@ -476,63 +476,17 @@ static vg_status read_array(const struct file *f, const struct array *a,
   return st;
 }
 
-vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
-                              double (**x)[3], double **value,
-                              struct vg_error *err)
-{
-  struct file f = { .in = in };
-  struct array point, scalar;
-  double *own[2] = { NULL, NULL };
-  size_t count = 0;
-  vg_status st;
-
-  assert(in && name && n && x && value);
-  VG_TRY(read_head(&f, err));
-  VG_TRY(read_piece(&f, &count, err));
-  VG_TRY(find_array(&f, "Points", NULL, &point, err));
-  VG_TRY(check_array(&f, "Points", &point, 3, 1, err));
-  VG_TRY(find_array(&f, "PointData", name, &scalar, err));
-  VG_TRY(check_array(&f, "PointData", &scalar, 1, 1, err));
-  own[0] = vg_alloc(count, 3 * sizeof *own[0]);
-  own[1] = vg_alloc(count, sizeof *own[1]);
-  if (!own[0] || !own[1]) {
-    st = vg_fail_memory(err, "the points of a VTK file");
-    goto done;
-  }
-  VG_TRY(read_array(&f, &point, 3 * count, own[0], err));
-  VG_TRY(read_array(&f, &scalar, count, own[1], err));
-  *n = count;
-  *x = (double(*)[3])own[0];
-  *value = own[1];
-  own[0] = own[1] = NULL;
-done:
-  free(own[0]);
-  free(own[1]);
-  return st;
-}
-
-vg_status vg_vtu_points_read(const char *path, const char *name, size_t *n,
-                             double (**x)[3], double **value,
-                             struct vg_error *err)
-{
-  struct vg_input in = VG_INPUT_INIT;
-  vg_status st = vg_input_open(path, &in, err);
-
-  if (st >= 0) st = vg_vtu_points_parse(&in, name, n, x, value, err);
-  vg_input_release(&in);
-  return st;
-}
-
 /* --- values with cells ---------------------------------------------------- */
 
-/* VTK's cells with volume: type, number of nodes, and our index of each node
- * (formats.md 2.3). */
+/* VTK's cells with volume and its faces: type, number of nodes, and our index
+ * of each node (formats.md 2.3). */
 static const struct cell {
   int type, n, node[8];
-} cells[] = { { 10, 4, { 0, 1, 2, 3 } },
-              { 14, 5, { 1, 0, 3, 4, 2 } },
-              { 13, 6, { 1, 0, 2, 4, 3, 5 } },
-              { 12, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } } };
+} cells[] = {
+  { 10, 4, { 0, 1, 2, 3 } },       { 14, 5, { 1, 0, 3, 4, 2 } },
+  { 13, 6, { 1, 0, 2, 4, 3, 5 } }, { 12, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
+  { 5, 3, { 0, 1, 2 } },           { 9, 4, { 0, 1, 2, 3 } }
+};
 enum { KINDS = sizeof cells / sizeof *cells };
 
 /* Arrays of the cells: the type of each, the end of its nodes, and the nodes of
@@ -584,7 +538,7 @@ done:
   return st;
 }
 
-/* Kind of cell i; KINDS: one without volume. */
+/* Kind of cell i; KINDS: another one. */
 static int kind_of(const struct grid *g, size_t i)
 {
   int k = 0;
@@ -593,8 +547,8 @@ static int kind_of(const struct grid *g, size_t i)
   return k;
 }
 
-static vg_status put_cells(const struct file *f, const struct grid *g,
-                           struct vg_mesh *m, struct vg_error *err)
+static vg_status make_room(const struct grid *g, struct vg_mesh *m,
+                           struct vg_error *err)
 {
   size_t n[KINDS + 1] = { 0 };
 
@@ -603,16 +557,36 @@ static vg_status put_cells(const struct file *f, const struct grid *g,
   m->pyr = vg_alloc(n[1], sizeof *m->pyr);
   m->pri = vg_alloc(n[2], sizeof *m->pri);
   m->hex = vg_alloc(n[3], sizeof *m->hex);
-  if (!m->tet || !m->pyr || !m->pri || !m->hex)
-    return vg_fail_memory(err, "the cells of a VTK file");
+  m->tri = vg_alloc(n[4], sizeof *m->tri);
+  m->quad = vg_alloc(n[5], sizeof *m->quad);
+  return m->tet && m->pyr && m->pri && m->hex && m->tri && m->quad
+         ? VG_OK
+         : vg_fail_memory(err, "the cells of a VTK file");
+}
+
+static uint32_t *next_cell(struct vg_mesh *m, int kind)
+{
+  switch (kind) {
+  case 0: return m->tet[m->n_tet++];
+  case 1: return m->pyr[m->n_pyr++];
+  case 2: return m->pri[m->n_pri++];
+  case 3: return m->hex[m->n_hex++];
+  case 4: return m->tri[m->n_tri++];
+  case 5: return m->quad[m->n_quad++];
+  default: return NULL;
+  }
+}
+
+static vg_status put_cells(const struct file *f, const struct grid *g,
+                           struct vg_mesh *m, struct vg_error *err)
+{
+  vg_status st = make_room(g, m, err);
+
+  if (st < 0) return st;
   for (size_t i = 0; i < g->n; i++) {
     int kind = kind_of(g, i);
     size_t from = i ? (size_t)g->end[i - 1] : 0;
-    uint32_t *to = kind == 0 ? m->tet[m->n_tet++]
-                 : kind == 1 ? m->pyr[m->n_pyr++]
-                 : kind == 2 ? m->pri[m->n_pri++]
-                 : kind == 3 ? m->hex[m->n_hex++]
-                             : NULL;
+    uint32_t *to = next_cell(m, kind);
 
     if (!to) continue;
     if ((size_t)g->end[i] - from != (size_t)cells[kind].n)
@@ -648,7 +622,8 @@ static vg_status read_values(const struct file *f, const char *name,
   VG_TRY(check_array(f, "PointData", &a, a.components, 1, err));
   if (*components < 1 || *components > 9)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: the array '%s' has %d components; a metric has 6 or 9",
+                   "%s: the array '%s' has %d components; sizes have 1, a "
+                   "metric 6 or 9",
                    f->in->path, name, *components);
   m->point = vg_alloc(m->n_point, sizeof *m->point);
   *value = vg_alloc(m->n_point, (size_t)*components * sizeof **value);

@@ -1,40 +1,28 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* io/mesh/vtu_read.h: reads the points of a VTK file and one value at each
- * (.vtu, .vtp: VTK's XML, in one piece), the format in which solvers export
- * their results. Text, base64 or raw, of either byte order, uncompressed or
- * compressed by zlib. */
+/* io/mesh/vtu_read.h: reads the points and cells of a VTK file with values at
+ * the points (.vtu, .vtp: VTK's XML, in one piece), the format in which solvers
+ * export their results. Text, base64 or raw, of either byte order, uncompressed
+ * or compressed by zlib. */
 #ifndef VG_IO_MESH_VTU_READ_H
 #define VG_IO_MESH_VTU_READ_H
 
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
-/** Read the points and the scalar point array `name`.
- *
- * @param n      out: number of points, at least one
- * @param x      out: [n], finite; to be freed
- * @param value  out: [n], finite; to be freed. All are unchanged on failure
- * VG_ERR_FORMAT: damaged, or there is no such array; VG_ERR_UNSUPPORTED:
- * several pieces, another compression, or values that are neither Float32 nor
- * Float64. */
-vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
-                              double (**x)[3], double **value,
-                              struct vg_error *err);
-vg_status vg_vtu_points_read(const char *path, const char *name, size_t *n,
-                             double (**x)[3], double **value,
-                             struct vg_error *err);
-
 /** Is there a point array `name`? 0 for a damaged file, too. */
 int vg_vtu_has_array(struct vg_input *in, const char *name);
 
-/** Read the points, the cells with volume (tetrahedra, pyramids, wedges,
- * hexahedra of first order; all others are skipped) and the point array `name`.
+/** Read the points, the cells and faces of first order (tetrahedra, pyramids,
+ * wedges, hexahedra, triangles, quadrilaterals; all others are skipped) and the
+ * point array `name`.
  *
- * @param out         empty before; points and cells, without faces
+ * @param out         empty before; points, cells and faces without patches
  * @param components  out: number of values per point, 1 to 9
  * @param value       out: [n_point][components], which need not be finite; to
  *                    be freed. All are unchanged on failure
- * Failures as above. */
+ * VG_ERR_FORMAT: damaged, or there is no such array; VG_ERR_UNSUPPORTED:
+ * several pieces, another compression, or values that are neither Float32 nor
+ * Float64. */
 vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,
                               struct vg_mesh *out, int *components,
                               double **value, struct vg_error *err);

@@ -129,46 +129,47 @@ struct values {
   int is_vtk;
 };
 
-static vg_status read_metrics_vtk(struct vg_input *in, struct values *v,
-                                  struct vg_error *err)
+static vg_status check_components(const char *path, int is_metric,
+                                  const struct values *v, struct vg_error *err)
 {
-  vg_status st;
-
-  if (vg_vtu_has_array(in, "size"))
+  if (!is_metric && v->components != 1)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s has both arrays 'size' and 'metric'; keep only one of "
-                   "them",
-                   in->path);
-  st = vg_vtu_values_parse(in, "metric", &v->m, &v->components, &v->value, err);
-  if (st >= 0 && v->components != 6 && v->components != 9)
+                   "%s: the array 'size' has %d components; an edge length "
+                   "has 1",
+                   path, v->components);
+  if (is_metric && v->components != 6 && v->components != 9)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the array 'metric' has %d components; a metric has 6 "
                    "(symmetric) or 9",
-                   in->path, v->components);
-  return st;
+                   path, v->components);
+  return VG_OK;
 }
 
-/* The sizes of points without cells grow between them; those of metrics are
- * interpolated in cells. */
 static vg_status read_vtk(const char *path, struct values *v,
                           struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
   struct vg_error inner = VG_ERROR_INIT;
+  int has_size, is_metric;
   vg_status st;
 
   v->is_vtk = 1;
   VG_TRY(vg_input_open(path, &in, err));
-  if (vg_vtu_has_array(&in, "metric")) {
-    st = read_metrics_vtk(&in, v, err);
+  has_size = vg_vtu_has_array(&in, "size");
+  is_metric = vg_vtu_has_array(&in, "metric");
+  if (has_size && is_metric) {
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s has both arrays 'size' and 'metric'; keep only one of "
+                 "them",
+                 path);
     goto done;
   }
-  v->components = 1;
-  st = vg_vtu_points_parse(&in, "size", &v->m.n_point, &v->m.point, &v->value,
-                           &inner);
+  st = vg_vtu_values_parse(&in, is_metric ? "metric" : "size", &v->m,
+                           &v->components, &v->value, &inner);
+  if (st >= 0) st = check_components(path, is_metric, v, &inner);
   if (st < 0)
     vg_fail(err, st, "%s%s", inner.text,
-            vg_vtu_has_array(&in, "size")
+            has_size || is_metric
               ? ""
               : "; edge lengths are read from a point array 'size', metrics "
                 "from 'metric'");
