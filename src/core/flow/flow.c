@@ -337,11 +337,14 @@ static void turn(struct settle *s, const uint8_t *turned)
     if (r->tri_shell[t] == UINT32_MAX || !turned[r->tri_shell[t]]) continue;
     s->m->tri[t][1] = s->m->tri[t][2];
     s->m->tri[t][2] = v;
-    r->n_flipped++;
   }
   for (size_t i = 0; i < r->n_shell; i++) {
+    struct vg_shell *shell = &r->shell[i];
+
     if (!turned[i]) continue;
-    r->shell[i].volume = -r->shell[i].volume;
+    r->n_flipped += shell->n_tri - 2 * shell->n_flipped;
+    shell->n_flipped = shell->n_tri - shell->n_flipped;
+    shell->volume = -shell->volume;
     n++;
   }
   r->shells_reoriented = n && n == r->n_shell;

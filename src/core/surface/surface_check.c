@@ -543,20 +543,27 @@ static void turn_quad(uint32_t node[4])
   node[3] = n;
 }
 
+static void count_flip(struct check *c, size_t face)
+{
+  c->r->n_flipped++;
+  if (c->shell[face] != UINT32_MAX) c->r->shell[c->shell[face]].n_flipped++;
+}
+
 /* A quadrilateral is turned only if both its halves are. */
 static void apply_flips(struct check *c)
 {
   struct vg_mesh *m = c->m;
 
+  for (size_t i = 0; i < c->r->n_shell; i++) c->r->shell[i].n_flipped = 0;
   for (size_t t = 0; t < m->n_tri; t++)
     if (c->flip[t]) {
       turn_tri(m->tri[t]);
-      c->r->n_flipped++;
+      count_flip(c, t);
     }
   for (size_t q = 0; q < m->n_quad; q++)
     if (c->flip[m->n_tri + 2 * q] && c->flip[m->n_tri + 2 * q + 1]) {
       turn_quad(m->quad[q]);
-      c->r->n_flipped++;
+      count_flip(c, m->n_tri + 2 * q);
     }
 }
 

@@ -38,14 +38,15 @@ struct vg_defect {
   double at[3]; /* Location. */
 };
 
-struct vg_shell { /* One edge-connected component. */
-  size_t n_tri;   /* Number of triangles; a quadrilateral counts as two. */
-  size_t face;    /* Its first face. */
-  int is_closed;  /* 1: every edge has exactly two faces. Parent and depth are
-                     determined among closed shells only. */
-  double volume;  /* Signed volume; > 0: normals point out of the shell. */
-  size_t parent;  /* Shell directly around it; SIZE_MAX: none. */
-  int depth;      /* Number of shells around it; 0: outermost. */
+struct vg_shell {   /* One edge-connected component. */
+  size_t n_tri;     /* Number of triangles; a quadrilateral counts as two. */
+  size_t face;      /* Its first face. */
+  size_t n_flipped; /* Its faces turned by the repair. */
+  int is_closed;    /* 1: every edge has exactly two faces. Parent and depth are
+                       determined among closed shells only. */
+  double volume;    /* Signed volume; > 0: normals point out of the shell. */
+  size_t parent;    /* Shell directly around it; SIZE_MAX: none. */
+  int depth;        /* Number of shells around it; 0: outermost. */
   double lo[3], hi[3];
 };
 

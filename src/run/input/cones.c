@@ -57,15 +57,44 @@ static void measure(const struct vg_mesh *m, struct body *b)
   for (int k = 0; k < 3; k++) b->length = fmax(b->length, b->hi[k] - b->lo[k]);
 }
 
+/* The plane of the open edges. Open edges can be found where neighbours agree
+ * in orientation, as they do after the repair, which comes later: if they
+ * disagree, a repaired copy is examined. A surface that cannot be repaired has
+ * no such plane; its check lists the defects. */
+static vg_status find_cut(const struct vg_read *r, int *axis, double *at,
+                          struct vg_error *err)
+{
+  const int symmetry = vg_options_farfield(&r->settings).symmetry;
+  struct vg_surface_check_options o = vg_options_check(&r->settings);
+  struct vg_surface_report found = VG_SURFACE_REPORT_INIT;
+  struct vg_mesh copy = VG_MESH_INIT;
+  struct vg_error why = VG_ERROR_INIT;
+  vg_status st = vg_domain_half(&r->surface, symmetry, axis, at, &why);
+
+  if (st != VG_ERR_GEOMETRY)
+    return st < 0 ? vg_fail(err, st, "%s", why.text) : st;
+  *axis = -1;
+  o.external = -1;
+  o.threads = (int)r->settings.threads;
+  VG_TRY(vg_mesh_copy(&copy, &r->surface, err));
+  VG_TRY(vg_surface_check(&copy, &o, &found, err));
+  if (found.count[VG_DEFECT_ORIENTATION] ||
+      found.count[VG_DEFECT_NONMANIFOLD_EDGE])
+    goto done;
+  st = vg_domain_half(&copy, symmetry, axis, at, err);
+done:
+  vg_surface_report_release(&found);
+  vg_mesh_release(&copy);
+  return st;
+}
+
 /* The symmetry plane of a half model: that of its open edges, or else the end
  * of the body nearest to 0 along the axis of the setting `half`. */
 static vg_status find_half(const struct vg_read *r, const struct body *b,
                            int *axis, double *at, struct vg_error *err)
 {
   const enum vg_flow_half half = (enum vg_flow_half)r->settings.half;
-  vg_status st = vg_domain_half(&r->surface,
-                                vg_options_farfield(&r->settings).symmetry,
-                                axis, at, err);
+  vg_status st = find_cut(r, axis, at, err);
 
   if (st < 0 || *axis >= 0 || half < VG_HALF_X) return st;
   *axis = (int)half - VG_HALF_X;

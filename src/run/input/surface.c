@@ -59,10 +59,14 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
   return VG_OK;
 }
 
-/* Notes on triangles that the repair removed, since the next check no longer
- * finds them. */
-static void note_removed(struct vg_boundary *b)
+/* Notes on triangles that the repair turned or removed, since the next check no
+ * longer finds them. */
+static void note_repairs(struct vg_boundary *b, int external)
 {
+  if (b->check.n_flipped && external < 0)
+    vg_note(b->notes,
+            "%zu triangles were reversed for a consistent orientation",
+            b->check.n_flipped);
   if (b->check.n_removed_wall)
     vg_note(b->notes,
             "%zu triangles of walls shared by touching bodies were removed, "
@@ -86,7 +90,7 @@ static vg_status check(struct vg_boundary *b, int external,
   o.stop = (struct vg_stop){ vg_display_stop, show };
   vg_display_update(show, "surface check", b->surface.n_tri, 0);
   st = vg_surface_check(&b->surface, &o, &b->check, err);
-  if (st >= 0) note_removed(b);
+  if (st >= 0) note_repairs(b, external);
   return st;
 }
 

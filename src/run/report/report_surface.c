@@ -203,14 +203,13 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
 
 static void repair_text(FILE *to, const struct vg_surface_report *r)
 {
-  /* If the whole surface was inverted, n_flipped triangles keep their
-   * orientation: those that were inverted before. */
+  /* If the whole surface was inverted, the other triangles disagreed. */
   size_t single = r->n_flipped;
 
   if (r->shells_reoriented) {
     single = 0;
-    for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
-    single -= r->n_flipped;
+    for (size_t i = 0; i < r->n_shell; i++)
+      single += r->shell[i].n_tri - r->shell[i].n_flipped;
     fprintf(to, "  repaired: the orientation of the whole surface was "
                 "reversed, so that normals point into the fluid\n");
   }
