@@ -171,7 +171,7 @@ static vg_status make_surface(vanguard_job *job)
                    job->run.size);
   VG_TRY(vg_boundary_shape(&p->read, &o, &job->show, &p->boundary, &job->err));
   VG_TRY(vg_boundary_check(&p->boundary, &job->show, &job->err));
-  vg_boundary_note_unset(&p->boundary);
+  vg_boundary_finish_conditions(&p->boundary);
   vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
 done:
   return st;

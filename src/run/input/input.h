@@ -287,9 +287,12 @@ vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
 void vg_problem_note_unused(struct vg_problem *p, int layers_on,
                             unsigned judged);
 
-/** Writers give patches without a condition that of an inviscid wall; this adds
- * a note that lists them. Called once conditions are final. */
-void vg_boundary_note_unset(struct vg_boundary *b);
+/** Gives inlets and outlets of an internal flow that have no condition, but
+ * names by which the flow was recognised, those of inflow and outflow (1001,
+ * 1002), and the other patches then that of an inviscid wall, as writers do.
+ * Adds a note that lists the patches without a condition. Called once the other
+ * conditions are final. */
+void vg_boundary_finish_conditions(struct vg_boundary *b);
 
 /** Writes all faces with a defect to a .vtu, with the kind as a cell field. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

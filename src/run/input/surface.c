@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "io/mesh/vtu.h"
 #include "io/stream/convention.h"
+#include "io/vgrid/mapbc.h"
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
@@ -24,6 +25,11 @@ static int has_conditions(const struct vg_mesh *m)
   for (size_t i = 0; i < m->n_patch; i++)
     if (m->patch[i].bc != VG_BC_NONE) return 1;
   return 0;
+}
+
+static int is_unset(const struct vg_patch *p)
+{
+  return p->bc == VG_BC_NONE && p->bc_fun3d == VG_BC_NONE;
 }
 
 /* The kernel accepts only triangles. */
@@ -136,24 +142,53 @@ static vg_status take_rows(struct vg_boundary *b, size_t n,
   return VG_OK;
 }
 
-void vg_boundary_note_unset(struct vg_boundary *b)
+/* Inlets and outlets that the decided flow recognised by their names. Returns
+ * their number. */
+static size_t give_openings(struct vg_boundary *b)
+{
+  size_t n = 0;
+
+  if (b->flow.kind != VG_FLOW_INTERNAL) return 0;
+  for (size_t i = 0; i < b->surface.n_patch; i++) {
+    struct vg_patch *patch = &b->surface.patch[i];
+    const enum vg_flow_role role = vg_flow_role_of(patch);
+
+    if (!is_unset(patch) || (role != VG_ROLE_INLET && role != VG_ROLE_OUTLET))
+      continue;
+    patch->bc = patch->family = role == VG_ROLE_INLET ? 1001 : 1002;
+    patch->bc_fun3d = vg_bc_to_fun3d(patch->bc, -1);
+    vg_note(b->notes,
+            "patch %d (%s) has no boundary condition and is written as %s (%d, "
+            "FUN3D %d) because of its name",
+            (int)patch->id, patch->name,
+            role == VG_ROLE_INLET ? "inflow" : "outflow", (int)patch->bc,
+            (int)patch->bc_fun3d);
+    n++;
+  }
+  return n;
+}
+
+/* A boundary on which some patches have conditions needs them on all. */
+void vg_boundary_finish_conditions(struct vg_boundary *b)
 {
   char list[12 * SHOWN_PATCHES + 8] = "";
   size_t n = 0, at = 0;
+  const int is_partly_set = give_openings(b) > 0;
   uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
 
   if (!has_faces) return; /* As for a note for which there is no memory. */
   for (size_t i = 0; i < b->surface.n_tri; i++)
     has_faces[b->surface.tri_patch[i]] = 1;
   for (size_t i = 0; i < b->surface.n_patch; i++) {
-    const struct vg_patch *patch = &b->surface.patch[i];
+    struct vg_patch *patch = &b->surface.patch[i];
 
-    if (patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE ||
-        !has_faces[i])
-      continue;
+    if (!is_unset(patch) || !has_faces[i]) continue;
     if (n++ < SHOWN_PATCHES)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch->id);
+    if (!is_partly_set) continue;
+    patch->bc = patch->family = 5;
+    patch->bc_fun3d = 3000;
   }
   if (n)
     vg_note(b->notes,
