@@ -22,8 +22,8 @@ static const struct {
   const char *table, *rows;
 } keeps[] = {
   { "",
-    " cad_seconds helpers max_cells write report_html ugrid_tail solver_parts "
-    "schedule threads min_full min_any min_height max_first_error "
+    " cad_seconds helpers max_cells max_memory write report_html ugrid_tail "
+    "solver_parts schedule threads min_full min_any min_height max_first_error "
     "max_top_ratio " },
   { "layers", " min_full min_any min_height max_first_error max_top_ratio " },
   { "sources", " bn alpha group " },

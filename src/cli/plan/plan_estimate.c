@@ -380,7 +380,7 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
   row->efficiency = row->speedup / ranks / threads;
   vg_plan_memory(p, o, ranks, threads, row->stage);
   row->memory = 0;
-  for (int i = 0; i < VG_PLAN_STAGES; i++)
+  for (int i = 0; i < VG_MEMORY_STAGES; i++)
     row->memory = fmax(row->memory, row->stage[i]);
   return VG_OK;
 }

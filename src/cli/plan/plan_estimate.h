@@ -9,6 +9,7 @@
 #include "cli/plan/plan.h"
 #include "cli/plot/timeline.h"
 #include "partition/cut/decomposition.h"
+#include "partition/model/memory.h"
 #include "partition/model/rates.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"
@@ -19,23 +20,14 @@ enum { VG_PLAN_LEAVES = 8 };
  * its sizes do not depend on the direction. */
 #define VG_PLAN_COARSENESS 2
 
-/** Stages of a run whose memory is forecast. */
-enum vg_plan_stage {
-  VG_PLAN_SURFACE, /* The surface is closed, completed and remeshed. */
-  VG_PLAN_SIZES,   /* The sizing field and the layers are built. */
-  VG_PLAN_FILL,
-  VG_PLAN_CHECK, /* Mesh check, during which files are written. */
-  VG_PLAN_STAGES
-};
-
 /** Forecast of a complete run on one machine. */
 struct vg_plan_row {
   int ranks, threads, ranks_per_node;
-  struct vg_model_result tasks; /* cutting and filling only */
-  double wall;                  /* seconds of the complete run */
-  double speedup, efficiency;   /* of the complete run, over one worker */
-  double stage[VG_PLAN_STAGES]; /* bytes of the rank that needs most */
-  double memory;                /* the largest of these */
+  struct vg_model_result tasks;   /* cutting and filling only */
+  double wall;                    /* seconds of the complete run */
+  double speedup, efficiency;     /* of the complete run, over one worker */
+  double stage[VG_MEMORY_STAGES]; /* bytes of the rank that needs most */
+  double memory;                  /* the largest of these */
 };
 
 /** The decomposition (discrete or octree) made before anything is filled. */
@@ -107,7 +99,7 @@ double vg_plan_shared(const struct vg_plan *p);
 /** Bytes of the rank that needs most, in each stage. o: the forecast of the
  * tasks. (plan_memory.c) */
 void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
-                    int ranks, int threads, double stage[VG_PLAN_STAGES]);
+                    int ranks, int threads, double stage[VG_MEMORY_STAGES]);
 
 /** Size in bytes of the files of a format in the write list; 0: unknown. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);

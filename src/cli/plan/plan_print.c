@@ -330,10 +330,10 @@ static void print_limits(const struct vg_plan *p)
 
 static const struct {
   const char *key, *text;
-} memory_stage[VG_PLAN_STAGES] = { { "surface", "surface" },
-                                   { "sizes", "sizing field and layers" },
-                                   { "fill", "fill" },
-                                   { "check", "mesh check and files" } };
+} memory_stage[VG_MEMORY_STAGES] = { { "surface", "surface" },
+                                     { "sizes", "sizing field and layers" },
+                                     { "fill", "fill" },
+                                     { "check", "mesh check and files" } };
 
 static void print_memory(const struct vg_plan *p)
 {
@@ -341,7 +341,7 @@ static void print_memory(const struct vg_plan *p)
   char text[32];
 
   printf("\nMemory of a rank with %d x %d\n", r->ranks, r->threads);
-  for (int i = 0; i < VG_PLAN_STAGES; i++)
+  for (int i = 0; i < VG_MEMORY_STAGES; i++)
     printf("  %-24s %15s\n", memory_stage[i].text, bytes(r->stage[i], text));
   printf("  %-24s %15s\n", "one copy per node", bytes(p->shared, text));
 }
@@ -415,7 +415,7 @@ static json_t *row_json(const struct vg_plan_row *r)
     "bytes_sent", r->tasks.bytes);
   json_t *memory = json_object();
 
-  for (int i = 0; i < VG_PLAN_STAGES; i++)
+  for (int i = 0; i < VG_MEMORY_STAGES; i++)
     json_object_set_new(memory, memory_stage[i].key, json_real(r->stage[i]));
   json_object_set_new(o, "memory_stages", memory);
   return o;

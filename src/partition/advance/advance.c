@@ -153,6 +153,11 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
+  if (st == VG_OK && p->options.admit) {
+    st = p->options.admit(p->options.admit_user, root ? &root->front : NULL,
+                          root ? &root->load : NULL, &p->options.rule, err);
+    st = vg_comm_agree(comm, st, err);
+  }
   if (st == VG_OK && p->options.maker == vg_discrete_part) {
     st = vg_coarse_mesh(p, comm, root, &coarse, spans ? &before : NULL, err);
     if (root) p->options.decomposition.coarse = &coarse;

@@ -174,6 +174,7 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   o.decomposition.n_part = 0;
   o.mesher = NULL;
   o.max_cells = 0;
+  o.admit = NULL;
   o.fail_leaves = 0;
   o.job = vg_digest_of(o.job, 6, "coarse");
   o.progress = (struct vg_progress){ progress, p };

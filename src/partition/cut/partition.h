@@ -33,9 +33,16 @@ struct vg_partition_options {
   int sweeps; /* Optimisation sweeps. */
   struct vg_mesher_pool *mesher; /* External mesher for leaves; NULL: the
                                     built-in kernel. */
-  uint64_t max_cells;     /* Upper limit of the number of cells; 0: none. */
-  uint64_t layer_cells;   /* Cells of the layers, which count towards
-                             max_cells. */
+  uint64_t max_cells;   /* Upper limit of the number of cells; 0: none. */
+  uint64_t layer_cells; /* Cells of the layers, which count towards
+                           max_cells. */
+  /* Called on every rank before the first task with the expected load, which
+   * only rank 0 has (NULL elsewhere); a failure on any rank ends the run.
+   * NULL: not called. */
+  vg_status (*admit)(const void *user, const struct vg_front *front,
+                     const struct vg_load *load, const struct vg_cut_rule *rule,
+                     struct vg_error *err);
+  const void *admit_user;
   uint64_t shuffle;       /* See engine.h. */
   struct vg_store *store; /* may be NULL */
   struct vg_digest job; /* Digest of sizing field and options, for the store. */

@@ -170,6 +170,11 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
   .keeps_mesh = 1, .hi = 9e15, .unit = "cells", .help = "Stop if the "
   "mesh, including its layers, would have more cells than "
         "this; 0: no limit")
+VG_ROW(REAL, plain, max_memory, "max_memory", 0,
+  .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "GB", .help = "Memory that all "
+  "ranks of a node may use together. The run ends before the fill if its "
+  "forecast is higher; 0: the free memory of the node, with a tolerance of a "
+  "quarter")
 VG_TEXT_ROW(plain, write, VG_WRITE_MAX, "write", "auto",
   .topic = VG_TOPIC_OUTPUT, .is_common = 1,
   .keeps_mesh = 1, .unit = "", .check = vg_write_list_check,

@@ -290,6 +290,16 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_settings *s = &p->resolved.settings;
   struct vg_partition_options o = vg_options_partition(s);
+  const struct vg_run_admission admission = {
+    .run = r,
+    .settings = s,
+    .counts = { .triangles = (double)boundary->n_tri,
+                .columns = layers ? (double)layers->columns.n_column : 0,
+                .leaves = (double)vg_sizing_leaves(sizing),
+                .is_stretched = vg_sizing_is_stretched(sizing),
+                .has_pictures = r->outputs && s->report_html },
+    .is_parted = o.maker != NULL
+  };
   double t = vg_display_now();
   vg_status st;
 
@@ -300,6 +310,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.shuffle = r->options.shuffle;
   o.fail_leaves = r->options.fail_leaves;
   o.fail_rounds = r->options.fail_rounds;
+  o.admit = vg_run_admit;
+  o.admit_user = &admission;
   o.progress = (struct vg_progress){ vg_display_update, show };
   o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(open_mesher(r, s, &o.mesher, err));

@@ -11,6 +11,7 @@
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
+#include "partition/model/memory.h"
 #include "partition/repair/near.h"
 #include "partition/solver/solver.h"
 #include "run/input/input.h"
@@ -140,6 +141,21 @@ char *vg_run_settings(const struct vg_settings *s,
 /** Digest of the plug-in mesher; returns 0 if the mesher is not a plug-in or
  * cannot be read. */
 int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d);
+
+/** What vg_run_admit must know. */
+struct vg_run_admission {
+  const struct vg_run *run;
+  const struct vg_settings *settings;
+  struct vg_memory_counts counts; /* Without cells and subdomains. */
+  int is_parted; /* 1: the void is decomposed before any of it is filled. */
+};
+
+/** run/stages/admit.c: VG_ERR_MEMORY if the forecast of the memory exceeds
+ * max_memory, or else the free memory of the node by more than a tolerance.
+ * As the option `admit` of the partition. Collective. */
+vg_status vg_run_admit(const void *admission, const struct vg_front *front,
+                       const struct vg_load *load,
+                       const struct vg_cut_rule *rule, struct vg_error *err);
 
 /** run/stages/report_memory.c: measures surface, layers (NULL: none) and sizing
  * field, in r->memory_of. */
