@@ -143,7 +143,7 @@ static void describe_surface(vanguard_job *job)
   if (!p->boundary.read || !m->n_tri || vg_comm_node_rank(job->comm)) return;
   to = open_memstream(&job->details, &size);
   if (!to) return;
-  vg_report_surface_text(to, m, &p->boundary.check,
+  vg_report_surface_text(to, m, &p->boundary.check, p->read.unit,
                          vg_boundary_is_stretched(&p->boundary),
                          VG_SHOWN_DEFECTS);
   if (fclose(to)) {

@@ -402,7 +402,7 @@ static void marks_given_settings(void **state)
     int given;
   } row[] = {
     { "growth", VG_USE_ALWAYS, 0 },         { "hmax", VG_USE_ALWAYS, 1 },
-    { "cad_angle", VG_USE_CAD, 0 },         { "unit", VG_USE_CAD, 1 },
+    { "cad_angle", VG_USE_CAD, 0 },         { "unit", VG_USE_ALWAYS, 1 },
     { "first", VG_USE_LAYERS, 1 },          { "ratio", VG_USE_LAYERS, 0 },
     { "min_full", VG_USE_LAYERS, 0 },       { "layers", VG_USE_ALWAYS, 0 },
     { "surface_size", VG_USE_REMESH, 1 },   { "subdomains", VG_USE_ALWAYS, 1 },

@@ -446,6 +446,7 @@ static void load(const char *path, struct vg_input *in)
 
 static void files_that_are_not_cad_are_refused(void **state)
 {
+  int unit;
   struct vg_input in = VG_INPUT_INIT;
   struct vg_cad *c = NULL;
   struct vg_error err = VG_ERROR_INIT;
@@ -463,7 +464,7 @@ static void files_that_are_not_cad_are_refused(void **state)
   vg_input_release(&in);
   vg_cad_close(c);
   assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, NULL, &m,
-                               &err),
+                               &unit, &err),
                    VG_ERR_IO);
 }
 
@@ -586,6 +587,7 @@ static int at_once(void *user)
 
 static void stops_on_request_and_at_the_time_limit(void **state)
 {
+  int unit;
   struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -593,7 +595,7 @@ static void stops_on_request_and_at_the_time_limit(void **state)
   (void)state;
   o.stop.ask = at_once;
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
-                               &err),
+                               &unit, &err),
                    VG_ERR_STOPPED);
   assert_non_null(strstr(err.text, "stopped"));
   o.stop.ask = NULL;
@@ -601,7 +603,7 @@ static void stops_on_request_and_at_the_time_limit(void **state)
   o.angle = 1;
   o.chord = 1e-7;
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
-                               &err),
+                               &unit, &err),
                    VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "time limit of 0.2 s"));
   assert_null(m.point);

@@ -174,7 +174,7 @@ static vg_status print_text(const struct vg_check_surface *a,
   vg_report_size_text(stdout, &b->surface);
   VG_TRY(vg_report_patches_text(stdout, &b->surface, err));
   vg_report_remesh_text(stdout, &b->remeshing);
-  vg_report_surface_text(stdout, &b->surface, &b->check,
+  vg_report_surface_text(stdout, &b->surface, &b->check, b->read->unit,
                          vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);
@@ -249,7 +249,8 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
     goto done;
   }
   VG_TRY(examine(a, b, &f, show, err));
-  body = vg_report_surface_json(&b->surface, &b->check, VG_LISTED_DEFECTS);
+  body = vg_report_surface_json(&b->surface, &b->check, b->read->unit,
+                                VG_LISTED_DEFECTS);
   n_note = p->notes.n;
   n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
   n_defect = b->check.n_defect;

@@ -157,7 +157,7 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
   return json_pack("{s:b s:o s:o s:o s:o s:o}", "ok", 1, "remesh",
                    vg_report_remesh_json(&b->remeshing, &b->surface), "patches",
                    vg_report_patches_json(&b->surface), "surface",
-                   vg_report_surface_json(&b->surface, &b->check,
+                   vg_report_surface_json(&b->surface, &b->check, b->read->unit,
                                           VG_LISTED_DEFECTS),
                    "notes", notes, "files", files);
 }
@@ -205,7 +205,7 @@ static void print(const struct vg_problem *p, const struct files *f)
   const struct vg_boundary *b = &p->boundary;
 
   vg_report_remesh_text(stdout, &b->remeshing);
-  vg_report_surface_text(stdout, &b->surface, &b->check,
+  vg_report_surface_text(stdout, &b->surface, &b->check, b->read->unit,
                          vg_boundary_is_stretched(b), 0);
   for (size_t i = 0; i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);

@@ -169,7 +169,8 @@ static void describe(struct look *l, const struct vg_mesh *m, vg_status st,
                                             b->read->settings.farfield.kind !=
                                               VG_DOMAIN_NONE));
   json_object_set_new(o, "surface",
-                      vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
+                      vg_report_surface_json(m, &b->check, b->read->unit,
+                                             VG_LISTED_DEFECTS));
   json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
   json_object_set_new(o, "size", vg_report_size_json(m));
   json_object_set_new(o, "patches", patches(l, m));

@@ -331,6 +331,7 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   m->n_tri = n.n_tri;
   s->is_solid = n.is_solid != 0;
   s->volume = n.volume;
+  s->unit = n.unit > 0 && n.unit < VG_CAD_UNIT_N ? (int)n.unit : 0;
   VG_TRY(take_array(k, n.n_tri, sizeof *s->tri_face, &s->tri_face, err));
   VG_TRY(take_array(k, n.n_tri, sizeof *m->tri_patch, &m->tri_patch, err));
   VG_TRY(take_array(k, n.n_segment, sizeof *s->segment, &s->segment, err));
@@ -548,7 +549,7 @@ vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
 
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
                       const struct vg_cad_options *options,
-                      struct vg_cad_model *keep, struct vg_mesh *out,
+                      struct vg_cad_model *keep, struct vg_mesh *out, int *unit,
                       struct vg_error *err)
 {
   const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
@@ -563,6 +564,7 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
   VG_TRY(vg_cad_open(&c, err));
   VG_TRY(
     parse(c, &in, kind, options ? options : &plain, keep != NULL, &s, err));
+  *unit = s.unit;
   if (keep) {
     struct vg_mesh copy = VG_MESH_INIT;
 

@@ -96,6 +96,7 @@ struct vg_cad_surface {
    * absolute volumes of connected shells. NAN if an edge does not have exactly
    * two faces. */
   double volume;
+  int unit; /* enum vg_cad_unit, of the result; FILE: not known */
 };
 #define VG_CAD_SURFACE_INIT                                                    \
   {                                                                            \
@@ -175,9 +176,10 @@ void vg_cad_model_release(struct vg_cad_model *m);
 /** vg_cad_open and vg_cad_parse for a file (gzip'd or not).
  * @param o     NULL for defaults
  * @param keep  empty; out: the child, with a copy of the surface; NULL: the
- *              child is ended */
+ *              child is ended
+ * @param unit  out: unit of the surface, as in struct vg_cad_surface */
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
                       const struct vg_cad_options *o, struct vg_cad_model *keep,
-                      struct vg_mesh *out, struct vg_error *err);
+                      struct vg_mesh *out, int *unit, struct vg_error *err);
 
 #endif

@@ -54,6 +54,7 @@ struct vg_cad_counts {
   uint64_t n_point, n_tri, n_segment, n_patch;
   int64_t is_solid;
   double volume;
+  int64_t unit; /* of the result; 0: not known */
 };
 
 struct vg_cad_patch {

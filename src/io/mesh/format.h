@@ -29,6 +29,7 @@ struct vg_read_info {
   size_t n_cell;               /* number of cells in the file */
   int has_mapbc;               /* a .mapbc was used */
   int has_own_mapbc; /* STEM.mapbc was ignored because Vanguard wrote it */
+  int unit;          /* enum vg_cad_unit, of the result; FILE: not known */
   enum vg_mapbc_layout layout; /* layout of the .mapbc */
   struct vg_mapbc_match match; /* patches without an entry, entries without a
                                   patch */

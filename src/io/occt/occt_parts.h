@@ -82,6 +82,7 @@ struct Model {
   double face_size = 0;  /* median diagonal of the faces' bounding boxes */
   bool is_solid = false; /* see struct vg_cad_surface */
   double volume = 0;
+  int unit = 0; /* enum vg_cad_unit; 0: not known */
 };
 
 /** Read the faces with their names, with lengths in the requested unit.

@@ -97,7 +97,7 @@ std::string name_of(const Handle(Standard_Transient) & entity)
 /* The unit of the result. `given`: millimetres per unit of the file; 0: the
  * file has no unit. */
 const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
-                        const Talk &talk)
+                        Model &model, const Talk &talk)
 {
   double own = given > 0 ? given : 1;
   const Unit *to = nullptr;
@@ -109,8 +109,10 @@ const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
     talk.note(format("lengths in the file are in %s, %.9g mm each; the "
                      "surface is in mm",
                      called, own));
+    model.unit = 1;
     return units[0];
   }
+  model.unit = static_cast<int>(to - units) + 1;
   if (!(given > 0))
     talk.note(format("the file names no unit of length; millimetres were "
                      "assumed, and the surface is in %s",
@@ -428,7 +430,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
   given = step_unit(reader.ChangeReader(), called);
   Interface_Static::SetCVal(
     "xstep.cascade.unit",
-    choose_unit(ask, given, called.c_str(), talk).open_cascade);
+    choose_unit(ask, given, called.c_str(), model, talk).open_cascade);
   talk.stage("translating its entities");
   if (!reader.Transfer(doc))
     throw Failure{ VG_ERR_INPUT, "this STEP file could not be converted to "
@@ -456,7 +458,7 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   if (!file.IsNull()) {
     refuse_too_many(count_iges_faces(file));
     given = file->GlobalSection().UnitValue();
-    const Unit &to = choose_unit(ask, given, "its unit", talk);
+    const Unit &to = choose_unit(ask, given, "its unit", model, talk);
     Interface_Static::SetCVal("xstep.cascade.unit", to.open_cascade);
     file->ChangeGlobalSection().SetCascadeUnit(to.mm);
   }
@@ -489,11 +491,13 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
     throw Failure{ VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
                                   "is truncated or damaged: export it again" };
   refuse_too_many(count_faces(shape, MOST_FACES + 1));
-  if (ask.unit)
-    throw Failure{ VG_ERR_INPUT, "a BREP file has no unit of length: "
-                                 "cad_unit must be file, and its numbers "
-                                 "are not scaled" };
-  talk.note("a BREP file has no unit of length: its numbers are not scaled");
+  model.unit = ask.unit;
+  talk.note(ask.unit > 0 && ask.unit <= n_unit
+              ? format("a BREP file has no unit of length: its numbers are "
+                       "taken to be in %s (unit) and are not scaled",
+                       units[ask.unit - 1].word)
+              : "a BREP file has no unit of length: its numbers are not "
+                "scaled");
   Collector(model, nullptr).add(shape, Face());
 }
 

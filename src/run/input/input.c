@@ -22,6 +22,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
+#include "run/input/units.h"
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
 #include "run/settings/patch_names.h"
@@ -358,6 +359,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   if (st == VG_ERR_STOPPED) return vg_display_stopped(show, err);
   if (st < 0) return st;
   r->has_cells = info.n_cell > 0;
+  if (info.unit) r->unit = info.unit;
   r->side = side_of(info.format);
   if (info.n_cell)
     vg_note(r->notes,
@@ -597,10 +599,13 @@ static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
 }
 
 /* Layer settings of an AFLR file for one patch, where none are given. */
-static vg_status merge_aflr_patch(struct vg_settings *s,
+static vg_status merge_aflr_patch(struct vg_read *r,
                                   const struct vg_aflr_patch *a, int32_t id,
                                   struct vg_error *err)
 {
+  const double spacing = vg_units_of_file(r, a->spacing);
+  const double thickness = vg_units_of_file(r, a->thickness);
+  struct vg_settings *s = &r->settings;
   const struct vg_layer_settings *l = &s->layer;
   struct vg_layer_row *row;
 
@@ -610,9 +615,9 @@ static vg_status merge_aflr_patch(struct vg_settings *s,
   if (!row) return vg_fail_memory(err, "the layers table");
   if (a->spacing > 0 && l->first == 0 && l->y_plus == 0 && isnan(row->first) &&
       isnan(row->y_plus))
-    row->first = a->spacing;
+    row->first = spacing;
   if (a->thickness > 0 && l->total == 0 && isnan(row->total))
-    row->total = a->thickness;
+    row->total = thickness;
   if (a->n_layer > 0 && a->n_layer <= VG_LEVELS_MAX && l->count == 0 &&
       row->count == VG_COUNT_NONE)
     row->count = a->n_layer;
@@ -641,73 +646,8 @@ static vg_status apply_aflr(struct vg_read *r, const char *path, int by_name,
     for (size_t j = 0; j < m->n_patch; j++)
       if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0
                   : m->patch[j].id == a.patch[i].id)
-        VG_TRY(
-          merge_aflr_patch(&r->settings, &a.patch[i], m->patch[j].id, err));
+        VG_TRY(merge_aflr_patch(r, &a.patch[i], m->patch[j].id, err));
 done:
-  vg_aflr_release(&a);
-  return st;
-}
-
-static int compare_height(const void *a, const void *b)
-{
-  const struct vg_point_height *p = a, *q = b;
-
-  for (int k = 0; k < 3; k++)
-    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
-  return (p->first > q->first) - (p->first < q->first);
-}
-
-static int compare_place(const void *a, const void *b)
-{
-  const struct vg_point_height *p = a, *q = b;
-
-  for (int k = 0; k < 3; k++)
-    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
-  return 0;
-}
-
-double *vg_point_height(const struct vg_point_heights *h, const double x[3])
-{
-  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0 };
-  struct vg_point_height *found;
-
-  if (!h->n) return NULL;
-  found = bsearch(&key, h->item, h->n, sizeof *h->item, compare_place);
-  return found ? &found->first : NULL;
-}
-
-/* A .surf may have a first height at each point. The heights are looked up by
- * coordinates, since repairs renumber points. */
-static vg_status read_heights(struct vg_read *r, struct vg_error *err)
-{
-  const char *path = r->files.surface;
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_aflr a = VG_AFLR_INIT;
-  size_t len = strlen(path);
-  vg_status st = VG_OK;
-
-  if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
-  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *r->files.front ||
-      *r->files.d3m || !r->settings.layer.from_files)
-    return VG_OK;
-  VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
-  if (!a.spacing) goto done;
-  r->heights.item = vg_alloc(a.n_point, sizeof *r->heights.item);
-  if (!r->heights.item) {
-    st = vg_fail_memory(err, "the heights of a .surf");
-    goto done;
-  }
-  for (size_t i = 0; i < a.n_point; i++) {
-    struct vg_point_height *to = &r->heights.item[r->heights.n];
-
-    if (!(a.spacing[i] > 0)) continue;
-    memcpy(to->x, m.point[i], sizeof to->x);
-    to->first = a.spacing[i];
-    r->heights.n++;
-  }
-  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item, compare_height);
-done:
-  vg_mesh_release(&m);
   vg_aflr_release(&a);
   return st;
 }
@@ -741,6 +681,8 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
+  VG_TRY(vg_units_begin(r, err));
+  VG_TRY(vg_units_end(r, NULL, err));
   VG_TRY(vg_read_sizes(r, err));
   VG_TRY(apply_conditions(r, err));
   VG_TRY(apply_patch_table(r, err));
@@ -757,6 +699,7 @@ static vg_status read_asides(const struct vg_settings *asked, struct vg_read *r,
   vg_status st;
 
   VG_TRY(begin(asked, r, err));
+  VG_TRY(vg_units_begin(r, err));
   if (*r->files.d3m) {
     VG_TRY(vg_d3m_read(r->files.d3m, &r->project, err));
     merge_layers(r);
@@ -774,7 +717,7 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
 
   VG_TRY(apply_aflr(r, r->files.tags, 0, err));
   VG_TRY(apply_aflr(r, r->files.aflr, 1, err));
-  VG_TRY(read_heights(r, err));
+  VG_TRY(vg_read_heights(r, err));
   /* All layer settings are in the settings now, except heights by point. */
   if (!r->heights.n) r->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(r, err));
@@ -795,6 +738,8 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
   st = read_asides(&p->asked, r, err);
   if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, show, st, err);
   else if (st >= 0) st = read_surface(r, show, err);
+  st = vg_comm_agree(comm, st, err);
+  if (st >= 0) st = vg_units_end(r, comm, err);
   if (st >= 0) st = read_patches(r, err);
   if (st >= 0 && show) st = vg_display_stopped(show, err);
   return vg_comm_agree(comm, st, err);

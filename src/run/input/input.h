@@ -98,6 +98,8 @@ struct vg_read {
   struct vg_point_heights heights;
   enum vg_flow_side side; /* Side of the surface to which triangles point in its
                              file format. */
+  int unit;               /* Unit of the mesh, enum vg_cad_unit; FILE: not
+                             known. */
   int has_cells;          /* 1: the surface is the boundary of a volume mesh. */
   struct vg_notes *notes; /* Notes of the problem; borrowed. */
 };

@@ -39,14 +39,16 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err);
 json_t *vg_report_patches_json(const struct vg_mesh *m);
 
-/** Shells, repairs, triangle quality, and the number of defects of each kind
- * with a description of the first `shown` ones. is_stretched: sizes depend on
- * the direction, so that slivers are no fault and are not listed. */
+/** Unit of length (enum vg_cad_unit), shells, repairs, triangle quality, and
+ * the number of defects of each kind with a description of the first `shown`
+ * ones. is_stretched: sizes depend on the direction, so that slivers are no
+ * fault and are not listed. */
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
-                            const struct vg_surface_report *r, int is_stretched,
-                            size_t shown);
+                            const struct vg_surface_report *r, int unit,
+                            int is_stretched, size_t shown);
 json_t *vg_report_surface_json(const struct vg_mesh *m,
-                               const struct vg_surface_report *r, size_t shown);
+                               const struct vg_surface_report *r, int unit,
+                               size_t shown);
 
 /** Result of remeshing; prints nothing, or returns null, if the surface was not
  * remeshed. */

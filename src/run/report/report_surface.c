@@ -9,6 +9,7 @@
 #include "core/surface/surface_quality.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
+#include "run/settings/length.h"
 
 static size_t n_cell(const struct vg_mesh *m)
 {
@@ -301,12 +302,14 @@ static json_t *quality_json(const struct vg_mesh *m)
 }
 
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
-                            const struct vg_surface_report *r, int is_stretched,
-                            size_t shown)
+                            const struct vg_surface_report *r, int unit,
+                            int is_stretched, size_t shown)
 {
   char text[1024], count[32];
   size_t at = 0;
 
+  fprintf(to, "  unit of length                   %s\n",
+          unit ? vg_unit_name(unit) : "not known");
   shells_text(to, r);
   repair_text(to, r);
   quality_text(to, m, is_stretched);
@@ -354,7 +357,8 @@ static json_t *defects_json(const struct vg_mesh *m,
 }
 
 json_t *vg_report_surface_json(const struct vg_mesh *m,
-                               const struct vg_surface_report *r, size_t shown)
+                               const struct vg_surface_report *r, int unit,
+                               size_t shown)
 {
   json_t *counts = json_object(), *shells = json_array();
 
@@ -371,7 +375,8 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                                     s->lo[0], s->lo[1], s->lo[2], "upper",
                                     s->hi[0], s->hi[1], s->hi[2]));
   }
-  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}", "ok",
+  return json_pack("{s:s? s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}",
+                   "unit", unit ? vg_unit_name(unit) : NULL, "ok",
                    r->n_defect == 0, "closed", r->is_closed, "defects",
                    (json_int_t)r->n_defect, "count", counts, "shells", shells,
                    "flipped", (json_int_t)r->n_flipped, "removed_points",

@@ -12,6 +12,7 @@
 
 #include "io/stream/stream.h"
 #include "run/common/text.h"
+#include "run/settings/length.h"
 #include "run/settings/names.h"
 
 #define PLACE_SIZE 200 /* the place of a member, as in sources[2].h0 */
@@ -128,7 +129,8 @@ static int is_integer(const json_t *v)
 static int has_type(const struct vg_param *p, const json_t *v)
 {
   switch (p->type) {
-  case VG_PARAM_REAL: return json_is_number(v);
+  case VG_PARAM_REAL:
+    return json_is_number(v) || (vg_param_is_length(p) && json_is_string(v));
   case VG_PARAM_COUNT:
   case VG_PARAM_ID: return is_integer(v);
   case VG_PARAM_PATCH: return json_is_string(v) || is_integer(v);
@@ -184,6 +186,9 @@ static vg_status set_value(const char *file, const char *place,
     len = json_string_length(v);
     if (p->type == VG_PARAM_PATCH && check_patch(file, place, text, err) < 0)
       return VG_ERR_INPUT;
+    if (vg_param_is_length(p) && !vg_length_parse(text, len, &(double){ 0 }))
+      return refuse(err, file, place,
+                    "must be a number, or a string with a unit as in \"30mm\"");
   } else if (json_is_boolean(v)) {
     text = json_is_true(v) ? "yes" : "no";
     len = strlen(text);
@@ -349,6 +354,12 @@ done:
 
 static json_t *real_json(double v)
 {
+  char text[VG_LENGTH_TEXT];
+
+  if (vg_length_has_unit(v)) {
+    vg_length_format(v, text);
+    return json_string(text);
+  }
   if (isnan(v)) return json_null();
   if (v == rint(v) && fabs(v) < 1e15) return json_integer((json_int_t)v);
   return json_real(v);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "run/settings/deck_json.h"
+#include "run/settings/length.h"
 
 #define NO_CONTROL "^[^\\u0000-\\u001f\\u007f]*$(?!\\n)"
 /* A name of a patch: not the number of one, and not '-'. */
@@ -180,8 +181,18 @@ static json_t *type_of(const char *type, int optional)
 
 static void describe_number(json_t *o, const struct vg_param *p)
 {
-  put(o, "type",
-      type_of(p->type == VG_PARAM_REAL ? "number" : "integer", p->optional));
+  if (vg_param_is_length(p)) {
+    json_t *type = json_pack("[s, s]", "number", "string");
+
+    if (p->optional) json_array_append_new(type, json_string("null"));
+    put(o, "type", type);
+    put(o, "pattern",
+        json_string(p->lo < 0 ? VG_LENGTH_PATTERN("-")
+                              : VG_LENGTH_PATTERN("")));
+  } else {
+    put(o, "type",
+        type_of(p->type == VG_PARAM_REAL ? "number" : "integer", p->optional));
+  }
   put(o, p->above_lo ? "exclusiveMinimum" : "minimum", number(p->lo));
   put(o, "maximum", number(p->hi));
 }

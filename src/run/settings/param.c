@@ -9,6 +9,7 @@
 
 #include "io/stream/stream.h"
 #include "run/common/ranges.h"
+#include "run/settings/length.h"
 #include "run/settings/names.h"
 #include "run/settings/settings.h"
 
@@ -36,12 +37,27 @@ static int in_range(const struct vg_param *p, double v)
 static vg_status set_real(const struct vg_param *p, void *at, const char *text,
                           size_t len, struct vg_error *err)
 {
+  const int is_length = vg_param_is_length(p);
+  int has_unit = 0;
   double v;
 
-  if (!vg_parse_real(text, len, &v))
-    return vg_fail(err, VG_ERR_INPUT, "%s must be a number, not '%.*s'",
-                   p->name, (int)len, text);
-  if (!in_range(p, v)) return out_of_range(p, text, len, err);
+  if (!vg_parse_real(text, len, &v)) {
+    if (is_length) has_unit = vg_length_parse(text, len, &v);
+    if (has_unit < 0)
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s is %.*s; a length with a unit has at most 10 digits "
+                     "and an exponent of at most 99",
+                     p->name, (int)len, text);
+    if (!has_unit)
+      return vg_fail(err, VG_ERR_INPUT, "%s must be a number%s, not '%.*s'",
+                     p->name,
+                     is_length ? ", or one with a unit as in 30mm (mm, cm, m, "
+                                 "km, inch, foot)"
+                               : "",
+                     (int)len, text);
+  }
+  if (!in_range(p, has_unit ? vg_length_number(v) : v))
+    return out_of_range(p, text, len, err);
   memcpy(at, &v, sizeof v);
   return VG_OK;
 }
@@ -216,7 +232,8 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
   switch (p->type) {
   case VG_PARAM_REAL:
     memcpy(&v, at, sizeof v);
-    if (isnan(v)) snprintf(real, sizeof real, "-");
+    if (vg_length_has_unit(v)) vg_length_format(v, real);
+    else if (isnan(v)) snprintf(real, sizeof real, "-");
     else real[vg_format_real(v, real)] = 0;
     snprintf(out, size, "%s", real);
     break;

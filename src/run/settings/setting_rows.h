@@ -73,9 +73,14 @@ VG_TEXT_ROW(plain, mapbc, VG_LIST_MAX, "mapbc", "",
   "patches; \"\": PROJECT.mapbc if it exists, unless an earlier run of "
   "Vanguard wrote it")
 VG_ROW(WORD, cad, unit, "unit", cad.unit,
-  .words = unit_words, .unit = "", .help = "Unit of length to which a CAD "
-  "model is converted, and hence the unit of the mesh; file: the unit of the "
-  "file")
+  .use = VG_USE_ALWAYS, .words = unit_words, .unit = "", .help = "Unit of "
+  "length of the mesh. A CAD model, and a surface with a file_unit, are "
+  "converted to it; the coordinates of another surface are taken to be in it; "
+  "file: that of the file")
+VG_ROW(WORD, cad, file_unit, "file_unit", 0,
+  .use = VG_USE_ALWAYS, .words = unit_words, .unit = "", .help = "Unit of "
+  "length of a surface file that states none (STL, OBJ, meshes); file: not "
+  "known")
 VG_ROW(WORD, cad, patches, "cad_patches", cad.patches,
   .words = cad_patch_words, .unit = "", .help = "How the faces of a CAD file "
   "form patches: one patch per face, or one for all faces with the same name, "

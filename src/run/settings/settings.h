@@ -311,7 +311,9 @@ vg_status vg_settings_add_named(struct vg_settings *s, const char *name,
                                 size_t n, const char *const *column,
                                 const char *const *value, struct vg_error *err);
 
-/** Check conditions between settings, e.g. hmin <= hmax. VG_ERR_INPUT. */
+/** Check conditions between settings, e.g. hmin <= hmax. Settings that contain
+ * lengths with a unit are checked in the unit of the mesh, or not at all as
+ * long as it is not known. VG_ERR_INPUT. */
 vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err);
 
 /** Set the value that `p` describes in the struct at `base` from text.
@@ -319,6 +321,22 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err);
  * them. */
 vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
                        size_t len, struct vg_error *err);
+
+/** May the value have a unit of length, as in 30mm? */
+int vg_param_is_length(const struct vg_param *p);
+
+/** The unit of the mesh as far as the settings state it (enum vg_cad_unit);
+ * VG_CAD_UNIT_FILE: they do not. */
+int vg_settings_unit(const struct vg_settings *s);
+
+/** Find a length with a unit (run/settings/length.h). Returns its setting, or
+ * NULL if there is none; *value: the length. */
+const struct vg_param *vg_settings_find_unit(const struct vg_settings *s,
+                                             double *value);
+
+/** Replace all lengths with a unit by numbers in the unit `unit` (enum
+ * vg_cad_unit, not FILE). */
+void vg_settings_convert(struct vg_settings *s, int unit);
 
 /** Write the value as text that vg_param_set reads back to the same value.
  * out[size] should hold VG_LIST_MAX * 2 + 3 bytes. */

@@ -181,7 +181,7 @@ static vg_status check_mach(const struct vg_farfield_row *f,
   return VG_OK;
 }
 
-vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
+static vg_status check(const struct vg_settings *s, struct vg_error *err)
 {
   const struct vg_farfield_row *f = &s->farfield;
   int centre = n_given(f->centre), lo = n_given(f->lo), hi = n_given(f->hi);
@@ -234,4 +234,21 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
     return VG_ERR_INPUT;
   return check_layers(s, err);
+}
+
+vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
+{
+  const int unit = vg_settings_unit(s);
+  struct vg_settings copy = VG_SETTINGS_INIT;
+  double value;
+  vg_status st;
+
+  if (!vg_settings_find_unit(s, &value)) return check(s, err);
+  if (!unit) return VG_OK;
+  st = vg_settings_copy(&copy, s, err);
+  if (st < 0) return st;
+  vg_settings_convert(&copy, unit);
+  st = check(&copy, err);
+  vg_settings_release(&copy);
+  return st;
 }

@@ -90,7 +90,8 @@ json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
   json_object_set_new(o, "input", vg_report_size_json(m));
   json_object_set_new(o, "patches", vg_report_patches_json(m));
   json_object_set_new(o, "surface",
-                      vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
+                      vg_report_surface_json(m, &b->check, p->read.unit,
+                                             VG_LISTED_DEFECTS));
   json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
   json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
   json_object_set_new(o, "notes", vg_report_notes_json(&p->notes));
@@ -129,8 +130,8 @@ void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
   vg_report_remesh_text(to, &b->remeshing);
   vg_report_domain_text(to, &b->domain);
   if (b->read)
-    vg_report_surface_text(to, m, &b->check, vg_boundary_is_stretched(b),
-                           VG_SHOWN_DEFECTS);
+    vg_report_surface_text(to, m, &b->check, r->problem->read.unit,
+                           vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
 }
 
 static void print_count(FILE *to, const char *name, size_t n)

@@ -93,11 +93,24 @@ lacks out "remeshed:"
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
 exits 0
-says out "settings that have no effect because no CAD file was read: unit"
-vanguard mesh -q -p "$cad/box.brep" --unit m --out b
+says out "the coordinates of body.obj are taken to be in m (unit)"
+vanguard mesh -q -p body.obj --cad-angle 9 --hmax 5 --out o
+exits 0
+says out "settings that have no effect because no CAD file was read: cad_angle"
+vanguard mesh -q -p "$cad/box.brep" --unit m --hmax 3000mm --out b
+exits 0
+says out "has no unit of length: its numbers are taken to be in m (unit)"
+vanguard mesh -q -p "$cad/box.brep" --hmax 3m --out none
 exits 1
-says err "has no unit of length"
-absent b/box.b8.ugrid
+says err "the unit of the mesh is not known"
+absent none/box.b8.ugrid
+# the file states its unit, so that lengths with units need no setting
+vanguard check -q "$cad/box.step" --surface-size 3mm
+exits 0
+says out "unit of length                   mm"
+vanguard check -q "$cad/box.step" --file-unit mm
+exits 1
+says err "remove file_unit"
 vanguard check "$cad/edges.brep" --remesh-surface no
 exits 1
 says err "there are no faces in it"

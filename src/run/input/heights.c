@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* First heights at the points of a .surf. Declared in run/input/input.h and
+ * run/input/units.h. */
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+#include "io/mesh/aflr.h"
+#include "run/input/units.h"
+
+static int compare_height(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+static int compare_place(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return 0;
+}
+
+double *vg_point_height(const struct vg_point_heights *h, const double x[3])
+{
+  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0 };
+  struct vg_point_height *found;
+
+  if (!h->n) return NULL;
+  found = bsearch(&key, h->item, h->n, sizeof *h->item, compare_place);
+  return found ? &found->first : NULL;
+}
+
+/* A .surf may have a first height at each point. The heights are looked up by
+ * coordinates, since repairs renumber points. */
+vg_status vg_read_heights(struct vg_read *r, struct vg_error *err)
+{
+  const char *path = r->files.surface;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_aflr a = VG_AFLR_INIT;
+  size_t len = strlen(path);
+  vg_status st = VG_OK;
+
+  if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
+  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *r->files.front ||
+      *r->files.d3m || !r->settings.layer.from_files)
+    return VG_OK;
+  VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
+  if (!a.spacing) goto done;
+  r->heights.item = vg_alloc(a.n_point, sizeof *r->heights.item);
+  if (!r->heights.item) {
+    st = vg_fail_memory(err, "the heights of a .surf");
+    goto done;
+  }
+  for (size_t i = 0; i < a.n_point; i++) {
+    struct vg_point_height *to = &r->heights.item[r->heights.n];
+
+    if (!(a.spacing[i] > 0)) continue;
+    for (int k = 0; k < 3; k++) to->x[k] = vg_units_of_file(r, m.point[i][k]);
+    to->first = vg_units_of_file(r, a.spacing[i]);
+    r->heights.n++;
+  }
+  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item, compare_height);
+done:
+  vg_mesh_release(&m);
+  vg_aflr_release(&a);
+  return st;
+}
