@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "base/free_memory.h"
+#include "run/common/free_memory.h"
 
 #define ROOT VG_TMP_DIR "/free_memory"
 

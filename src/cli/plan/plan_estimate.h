@@ -9,7 +9,7 @@
 #include "cli/plan/plan.h"
 #include "cli/plot/timeline.h"
 #include "partition/cut/decomposition.h"
-#include "partition/model/memory.h"
+#include "partition/model/memory_stages.h"
 #include "partition/model/rates.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"

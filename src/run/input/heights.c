@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* First heights at the points of a .surf. Declared in run/input/input.h and
- * run/input/units.h. */
+ * run/input/mesh_unit.h. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/memory.h"
 #include "io/mesh/aflr.h"
-#include "run/input/units.h"
+#include "run/input/mesh_unit.h"
 
 static int compare_height(const void *a, const void *b)
 {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/free_memory.h"
-#include "partition/model/memory.h"
+#include "run/common/free_memory.h"
+#include "partition/model/memory_stages.h"
 #include "run/stages/run.h"
 
 /* M11: a forecast may exceed the free memory by this factor, since it may be

@@ -90,7 +90,8 @@ json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
   json_object_set_new(o, "input", vg_report_size_json(m));
   json_object_set_new(o, "patches", vg_report_patches_json(m));
   json_object_set_new(o, "surface",
-                      vg_report_surface_json(m, &b->check, p->read.unit,
+                      vg_report_surface_json(m, &b->check,
+                                             r->problem->read.unit,
                                              VG_LISTED_DEFECTS));
   json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
   json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));

@@ -11,7 +11,7 @@
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
-#include "partition/model/memory.h"
+#include "partition/model/memory_stages.h"
 #include "partition/repair/near.h"
 #include "partition/solver/solver.h"
 #include "run/input/input.h"

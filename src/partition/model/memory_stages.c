@@ -2,7 +2,7 @@
 /* The constants are bytes (M7). Data structures whose size the report of a run
  * gives have a constant each. Temporary arrays, and memory of the heap that is
  * free but not returned, are fitted to the measured peaks of the stages. */
-#include "partition/model/memory.h"
+#include "partition/model/memory_stages.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* partition/model/memory.h: forecast of the memory of a rank in each stage of a
- * run, from counts that are known before the fill. Uses forecast.h. */
-#ifndef VG_PARTITION_MODEL_MEMORY_H
-#define VG_PARTITION_MODEL_MEMORY_H
+/* partition/model/memory_stages.h: forecast of the memory of a rank in each
+ * stage of a run, from counts that are known before the fill. Uses forecast.h.
+ */
+#ifndef VG_PARTITION_MODEL_MEMORY_STAGES_H
+#define VG_PARTITION_MODEL_MEMORY_STAGES_H
 
 #include "partition/model/forecast.h"
 

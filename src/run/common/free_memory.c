@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "base/free_memory.h"
+#include "run/common/free_memory.h"
 
 #include <malloc.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* base/free_memory.h: memory that the processes of a node may still use. */
-#ifndef VG_BASE_FREE_MEMORY_H
-#define VG_BASE_FREE_MEMORY_H
+/* run/common/free_memory.h: memory that the processes of a node may use. */
+#ifndef VG_RUN_COMMON_FREE_MEMORY_H
+#define VG_RUN_COMMON_FREE_MEMORY_H
 
 /** Bytes that are free on this machine, and in the control groups (version 1
  * or 2) of this process, whichever is less. Pages of files that the kernel can

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "run/input/units.h"
+#include "run/input/mesh_unit.h"
 
 #include <math.h>
 #include <stdio.h>

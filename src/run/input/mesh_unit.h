@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* run/input/units.h: the unit of the mesh, and lengths with a unit. Private to
- * run/input. */
-#ifndef VG_RUN_INPUT_UNITS_H
-#define VG_RUN_INPUT_UNITS_H
+/* run/input/mesh_unit.h: the unit of the mesh, and lengths with a unit. Private
+ * to run/input. */
+#ifndef VG_RUN_INPUT_MESH_UNIT_H
+#define VG_RUN_INPUT_MESH_UNIT_H
 
 #include "run/input/input.h"
 
