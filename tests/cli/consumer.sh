@@ -69,7 +69,8 @@ done
 
 # The installation can be moved: its files find each other by relative paths,
 # and none refers to the build tree.
-find "$prefix" -type f \( -name 'lib*.so*' -o -perm -u+x ! -name '*.sbatch' \) |
+find "$prefix" -type f \( -name 'lib*.so*' -o -perm -u+x ! -name '*.sbatch' \
+    ! -name '*.py' ! -name '*.sh' \) |
   while IFS= read -r file; do
     paths=$(readelf -d "$file" | sed -n 's/.*R.*PATH.*\[\(.*\)\]/\1/p')
     case :$paths in

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The module itself: import, version, text forms, lists of formats.
 module.py FOLDER VERSION"""
+import copy
 import ctypes.util
 import os
 import pickle
@@ -71,6 +72,19 @@ def test_errors():
     again = pickle.loads(pickle.dumps(error))
     assert (type(again), str(again), again.status, again.kind) == (
         vanguard.Error, str(error), error.status, "usage")
+
+
+def test_jobs_are_not_copied():
+    job = vanguard.Job()
+    for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+        assert "cannot be copied" in str(failure(copied, job))
+
+
+def test_set_changes_all_or_nothing():
+    job = vanguard.Job()
+    before = job.get("growth"), job.get("first")
+    failure(job.set, growth=1.4, first=0.1, bogus=3)
+    assert (job.get("growth"), job.get("first")) == before
 
 
 def test_arguments():
