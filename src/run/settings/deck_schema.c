@@ -40,7 +40,7 @@ static const struct {
 };
 
 #define POSITIVE "{'exclusiveMinimum':0}"
-#define NUMBER "{'type':'number'}"
+#define GIVEN "{'not':{'type':'null'}}"
 #define TRUE "{'const':true}"
 #define MACH "{'const':'mach'}"
 #define ONE_OR_MORE "{'minimum':1}"
@@ -56,35 +56,35 @@ static const struct {
   const char *second, *b;
 } pair_condition[] = {
   { "settings", "first", POSITIVE, EXCLUDES, "y_plus", POSITIVE },
-  { "settings", "ratio", NUMBER, EXCLUDES, "rate1", NUMBER },
-  { "settings", "ratio", NUMBER, EXCLUDES, "rate2", NUMBER },
+  { "settings", "ratio", GIVEN, EXCLUDES, "rate1", GIVEN },
+  { "settings", "ratio", GIVEN, EXCLUDES, "rate2", GIVEN },
   { "settings", "reynolds", POSITIVE, NEEDS, "reference_length", POSITIVE },
   { "settings", "reference_length", POSITIVE, NEEDS, "reynolds", POSITIVE },
   { "settings", "y_plus", POSITIVE, NEEDS, "reynolds", POSITIVE },
   { "settings", "constant_direction", TRUE, NEEDS, "split_direction",
     ONE_OR_MORE },
-  { "layers", "first", NUMBER, EXCLUDES, "y_plus", NUMBER },
-  { "layers", "ratio", NUMBER, EXCLUDES, "rate1", NUMBER },
-  { "layers", "ratio", NUMBER, EXCLUDES, "rate2", NUMBER },
-  { "farfield", "x", NUMBER, NEEDS, "y", NUMBER },
-  { "farfield", "y", NUMBER, NEEDS, "z", NUMBER },
-  { "farfield", "z", NUMBER, NEEDS, "x", NUMBER },
-  { "farfield", "xlo", NUMBER, NEEDS, "ylo", NUMBER },
-  { "farfield", "ylo", NUMBER, NEEDS, "zlo", NUMBER },
-  { "farfield", "zlo", NUMBER, NEEDS, "xhi", NUMBER },
-  { "farfield", "xhi", NUMBER, NEEDS, "yhi", NUMBER },
-  { "farfield", "yhi", NUMBER, NEEDS, "zhi", NUMBER },
-  { "farfield", "zhi", NUMBER, NEEDS, "xlo", NUMBER },
-  { "farfield", "xlo", NUMBER, NEEDS, "kind", "{'const':'box'}" },
-  { "farfield", "kind", MACH, NEEDS, "mach", NUMBER },
-  { "farfield", "mach", NUMBER, NEEDS, "kind", MACH },
-  { "farfield", "upstream", NUMBER, NEEDS, "kind", MACH },
-  { "farfield", "downstream", NUMBER, NEEDS, "kind", MACH },
-  { "farfield", "radial", NUMBER, NEEDS, "kind", MACH },
-  { "farfield", "ux", NUMBER, NEEDS, "kind", MACH },
-  { "farfield", "ux", NUMBER, NEEDS, "uy", NUMBER },
-  { "farfield", "uy", NUMBER, NEEDS, "uz", NUMBER },
-  { "farfield", "uz", NUMBER, NEEDS, "ux", NUMBER },
+  { "layers", "first", GIVEN, EXCLUDES, "y_plus", GIVEN },
+  { "layers", "ratio", GIVEN, EXCLUDES, "rate1", GIVEN },
+  { "layers", "ratio", GIVEN, EXCLUDES, "rate2", GIVEN },
+  { "farfield", "x", GIVEN, NEEDS, "y", GIVEN },
+  { "farfield", "y", GIVEN, NEEDS, "z", GIVEN },
+  { "farfield", "z", GIVEN, NEEDS, "x", GIVEN },
+  { "farfield", "xlo", GIVEN, NEEDS, "ylo", GIVEN },
+  { "farfield", "ylo", GIVEN, NEEDS, "zlo", GIVEN },
+  { "farfield", "zlo", GIVEN, NEEDS, "xhi", GIVEN },
+  { "farfield", "xhi", GIVEN, NEEDS, "yhi", GIVEN },
+  { "farfield", "yhi", GIVEN, NEEDS, "zhi", GIVEN },
+  { "farfield", "zhi", GIVEN, NEEDS, "xlo", GIVEN },
+  { "farfield", "xlo", GIVEN, NEEDS, "kind", "{'const':'box'}" },
+  { "farfield", "kind", MACH, NEEDS, "mach", GIVEN },
+  { "farfield", "mach", GIVEN, NEEDS, "kind", MACH },
+  { "farfield", "upstream", GIVEN, NEEDS, "kind", MACH },
+  { "farfield", "downstream", GIVEN, NEEDS, "kind", MACH },
+  { "farfield", "radial", GIVEN, NEEDS, "kind", MACH },
+  { "farfield", "ux", GIVEN, NEEDS, "kind", MACH },
+  { "farfield", "ux", GIVEN, NEEDS, "uy", GIVEN },
+  { "farfield", "uy", GIVEN, NEEDS, "uz", GIVEN },
+  { "farfield", "uz", GIVEN, NEEDS, "ux", GIVEN },
   { "farfield", "kind", MACH, EXCLUDES, "size", POSITIVE },
   { "farfield", "kind", MACH, EXCLUDES, "lengths", "{'not':{'const':20}}" },
 };
@@ -117,7 +117,7 @@ static const struct {
         "'properties':{'kind':{'const':'none'}}}}}}" },
   { "",
     "{'if':{'required':['layers'],'properties':{'layers':{'type':'array',"
-    "'contains':{'required':['y_plus'],'properties':{'y_plus':" NUMBER "}}}}},"
+    "'contains':{'required':['y_plus'],'properties':{'y_plus':" GIVEN "}}}}},"
     "'then':{'required':['settings'],'properties':{'settings':{"
     "'required':['reynolds'],'properties':{'reynolds':" POSITIVE "}}}}}" },
 };
