@@ -94,6 +94,7 @@ inside() {
     CMAKE_C_COMPILER_LAUNCHER="${launcher:-}" \
     CMAKE_CXX_COMPILER_LAUNCHER="${launcher:-}" \
     CCACHE_DIR=/objects CCACHE_BASEDIR="$home" CCACHE_NOHASHDIR=1 \
+    CCACHE_SLOPPINESS=locale \
     bash -euo pipefail -c "cd; $*"
 }
 

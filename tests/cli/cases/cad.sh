@@ -105,9 +105,9 @@ exits 1
 says err "the unit of the mesh is not known"
 absent none/box.b8.ugrid
 # the file states its unit, so that lengths with units need no setting
-vanguard check -q "$cad/box.step" --surface-size 3mm
+vanguard check -q "$cad/box.step" --surface-size 300mm
 exits 0
-says out "unit of length                   mm"
+says out "unit of length                   m"
 vanguard check -q "$cad/box.step" --file-unit mm
 exits 1
 says err "remove file_unit"

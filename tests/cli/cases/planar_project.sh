@@ -98,7 +98,10 @@ expected() {
 cp "$here/../../examples/wing_body/wing_body.d3m" .
 vanguard mesh -q -p wing_body --scale 3 --rate2 0.01 --out rates
 exits 0
-rates=$(awk '$1 ~ /^#/ { next } { for (i = 1; i <= NF; i++) at[$i] = i }
-  at["rate1"] && at["rate2"] { getline; print $at["rate1"], $at["rate2"]; exit }
-  { delete at }' rates/wing_body.resolved.deck)
+resolved() {   # the value of a setting, in the line below its name
+  awk -v name="$1" 'k { print $k; exit }
+    { for (i = 1; i <= NF; i++) if ($i == name) k = i }' \
+    rates/wing_body.resolved.deck
+}
+rates="$(resolved rate1) $(resolved rate2)"
 [ "$rates" = "0.18 0.01" ] || fail "rates '$rates' instead of 0.18 and 0.01"
