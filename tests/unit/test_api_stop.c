@@ -73,6 +73,21 @@ static vanguard_job *new_box(void)
   return job;
 }
 
+/* As vanguard_mesh; skips the test in a build without TetGen, which recovers
+ * two triangles of the box, and frees the job then. */
+static vanguard_status mesh(vanguard_job *job, vanguard_progress *progress,
+                            void *user)
+{
+  vanguard_status st = vanguard_mesh(job, progress, user);
+
+  if (st == VANGUARD_ERR_GEOMETRY &&
+      strstr(vanguard_message(job), "vanguard-tetgen")) {
+    vanguard_free(job);
+    skip();
+  }
+  return st;
+}
+
 /* --- while a phase runs --------------------------------------------------- */
 
 struct watch {
@@ -101,7 +116,7 @@ static void it_stops_in_every_phase(void **state)
   for (size_t i = 0; i < sizeof phase / sizeof *phase; i++) {
     struct watch w = { .stop_at = phase[i] };
 
-    assert_int_equal(vanguard_mesh(job, stop_at, &w), VANGUARD_ERR_STOPPED);
+    assert_int_equal(mesh(job, stop_at, &w), VANGUARD_ERR_STOPPED);
     assert_true(w.is_asked);
     assert_int_equal(w.n_later, 0);
   }
@@ -168,7 +183,7 @@ static void it_stops_while_files_are_written(void **state)
   mkdir(FOLDER, 0755);
   n_files(1);
   written = new_box();
-  assert_int_equal(vanguard_mesh(written, NULL, NULL), 0);
+  assert_int_equal(mesh(written, NULL, NULL), 0);
   assert_int_equal(sigaction(SIGPROF, &a, NULL), 0);
   setitimer(ITIMER_PROF, &soon, NULL);
   st = vanguard_write(written, FOLDER "/box", "vtu,su2,b8.ugrid,cogsg,msh");
