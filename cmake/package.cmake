@@ -53,8 +53,8 @@ Vanguard turns a closed surface and a sizing field into a volume mesh:
 viscous layers on the walls, tetrahedra elsewhere, on threads and MPI
 ranks. The mesh does not depend on their number.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-  "vanguard-helpers (= ${version}), libvanguard-cad0 (= ${version}), mpi-default-bin")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "vanguard-doc, libmicrohttpd12")
+  "vanguard-helpers (= ${version}), libvanguard-cad0 (= ${version}), mpi-default-bin, libmicrohttpd12")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "vanguard-doc")
 vg_package(library libvanguard1 libs lgpl
   "parallel unstructured mesh generator, shared library
 Vanguard turns a closed surface and a sizing field into a volume mesh.

@@ -34,6 +34,8 @@ for i in range(100):
     if found:
         break
     time.sleep(0.1)
+else:
+    raise SystemExit(open("serve.log").read())
 page = urllib.request.urlopen(found.group(0).rstrip(".,")).read().decode()
 assert "<html" in page, page[:200]
 print("portal:", len(page), "characters")
