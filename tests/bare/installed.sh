@@ -22,7 +22,7 @@ print("python3:", vanguard.library_version(), mesh.points.shape)
 END
 
 # The portal answers on the port that it names.
-vanguard serve --port 0 . >serve.log 2>&1 &
+vanguard serve --port 0 >serve.log 2>&1 &
 portal=$!
 python3 - <<'END'
 import re
