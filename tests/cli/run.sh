@@ -56,7 +56,7 @@ octahedron() {
 skip() { echo "skipped: $*"; exit 77; }
 
 # needs PART...: skip the case in a build without one of the parts (tetgen,
-# wrap, metis, mpi).
+# wrap, metis, mpi, hdf5).
 needs() {
   local part parts
   parts=$("$program" --version --verbose)
@@ -65,6 +65,7 @@ needs() {
       tetgen | wrap) [[ $parts != *"vanguard-$part not found"* ]] ;;
       metis) [[ ! $parts =~ METIS\ +not\ in ]] ;;
       mpi) [[ ! $parts =~ MPI\ +not\ in ]] ;;
+      hdf5) [[ ! $parts =~ HDF5\ +not\ in ]] ;;
     esac || skip "built without $part"
   done
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Conditions of patches that have none.
+needs hdf5
 
 # quad NAME A B C D: a face of a box as two triangles of an ASCII STL
 quad() {

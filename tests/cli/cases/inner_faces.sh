@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Faces between two cells that a file lists as boundary, as gmsh does for the
 # interface of two volumes: check, partition and surfaces do without them.
+needs metis
 cat >two.msh <<'END'
 $MeshFormat
 2.2 0 8
