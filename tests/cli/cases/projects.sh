@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # All commands accept a project by its stem, with -p, and by its .d3m.
+needs metis
 vanguard demo box --cells 2000 --out p
 vanguard check -q p/box
 exits 0
