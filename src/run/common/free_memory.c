@@ -10,8 +10,8 @@
 
 enum { PATH = 1024 };
 
-/* The first number of a file. Infinite if there is none, as in a limit `max`.
- */
+/* The first number of a file. Infinite if the file has no number, as in a limit
+ * `max`. */
 static double number_in(const char *root, const char *folder, const char *name)
 {
   char path[3 * PATH];
@@ -26,7 +26,7 @@ static double number_in(const char *root, const char *folder, const char *name)
   return v;
 }
 
-/* The number that follows `key` at the beginning of a line; 0: there is none.
+/* The number that follows `key` at the beginning of a line; 0: no line has one.
  */
 static double number_after(const char *root, const char *folder,
                            const char *name, const char *key)

@@ -330,7 +330,7 @@ int vg_param_is_length(const struct vg_param *p);
 int vg_settings_unit(const struct vg_settings *s);
 
 /** Find a length with a unit (run/settings/length.h). Returns its setting, or
- * NULL if there is none; *value: the length. */
+ * NULL if no length has a unit; *value: the length. */
 const struct vg_param *vg_settings_find_unit(const struct vg_settings *s,
                                              double *value);
 
