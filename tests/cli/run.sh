@@ -80,11 +80,11 @@ python() {
   done
   [ -n "$python" ] || skip "NumPy is not installed (python3-numpy)"
   # A sanitizer of the library must be loaded first. Python itself has leaks.
+  # LD_PRELOAD takes a list with spaces, not with line ends.
   preload=$(ldd "$build/lib/libvanguard.so.1" |
-    awk '/lib[at]san|libubsan/ { print $3 }')
-  [ -z "$preload" ] ||
-    preload+=" $(ldd "$build/lib/libvanguard.so.1" |
-      awk '/libstdc/ { print $3 }')"
+    awk '/lib[at]san|libubsan/ { sanitizer = sanitizer $3 " " }
+      /libstdc/ { library = $3 }
+      END { if (sanitizer) print sanitizer library }')
   PYTHONPATH=$build:$here/python VANGUARD_LIBRARY=$build/lib/libvanguard.so.1 \
     PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD=$preload \
     ASAN_OPTIONS=detect_leaks=0 "$python" "$here/python/$file" "$@" >out 2>err

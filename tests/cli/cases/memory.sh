@@ -5,7 +5,7 @@ vanguard demo box --cells 200000 --out .
 exits 0
 vanguard mesh -q -p box --write b8.ugrid --max-memory 0.02 --out small
 exits 1
-says err "cells outside the layers and need 0.0"
+says err "cells outside the layers and need 0."
 says err "GB on each node in the mesh check, but --max-memory allows 0.02 GB; \
 use larger sizes or more nodes"
 absent small/box.b8.ugrid
