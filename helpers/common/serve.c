@@ -41,6 +41,16 @@ static void watch(void)
   signal(SIGPIPE, SIG_IGN);
 }
 
+/* A library that crashes is expected, and ends the process at once. Sanitizers
+ * have handlers that would compose a report, which nobody reads. */
+static void crash_at_once(void)
+{
+  static const int signals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
+
+  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+    signal(signals[i], SIG_DFL);
+}
+
 static void introduce(const char *name, const char *library, const char *source)
 {
   struct vg_helper_hello h;
@@ -77,6 +87,7 @@ void vg_serve_start(int argc, char **argv, const char *name,
             name, library);
     exit(is_asked ? 0 : 2);
   }
+  crash_at_once();
   watch();
   introduce(name, library, source);
 }
