@@ -15,7 +15,7 @@ rm -rf "$folder"
 mkdir -p "$folder"
 cd "$folder" || exit 1
 unset VANGUARD_HELPERS
-export LC_ALL=C COLUMNS=80
+export LC_ALL=C COLUMNS=80 ASAN_OPTIONS="${ASAN_OPTIONS:-}"
 
 # vanguard ARGS...: output in files out and err, exit status in $status.
 vanguard() {
@@ -87,7 +87,7 @@ python() {
       END { if (sanitizer) print sanitizer library }')
   PYTHONPATH=$build:$here/python VANGUARD_LIBRARY=$build/lib/libvanguard.so.1 \
     PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD=$preload \
-    ASAN_OPTIONS=detect_leaks=0 "$python" "$here/python/$file" "$@" >out 2>err
+    ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 "$python" "$here/python/$file" "$@" >out 2>err
   status=$?
   [ $status != 77 ] || skip "$(cat out)"
 }

@@ -56,7 +56,7 @@ says out "note: points projected onto the CAD model: "
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 if mpirun -n 2 true >/dev/null 2>&1; then
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 3 "$program" mesh "$@" --test-node-ranks 2 \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 3 "$program" mesh "$@" --test-node-ranks 2 \
     --out three >out 2>err
   status=$?
   exits 0

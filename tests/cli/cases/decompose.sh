@@ -25,7 +25,7 @@ for way in 'remesh metis' 'h-refine rcb'; do
   exits 0
   cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "the mesh depends on threads"
   if mpirun -n 2 true >/dev/null 2>&1; then
-    ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
+    ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
       --out ranks >out 2>err || fail "2 ranks: $(cat err)"
     cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "the mesh depends on ranks"
   fi
@@ -86,7 +86,7 @@ for way in advancing discrete octree; do
   near() { jq -c .partition.near_interfaces "$1/box.report.json"; }
   [ "$(near one)" = "$(near many)" ] || fail "$way: the cells near interfaces differ"
   if mpirun -n 2 true >/dev/null 2>&1; then
-    ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
+    ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
       --schedule cyclic --out ranks >out 2>err || fail "2 ranks: $(cat err)"
     cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "$way: ranks, static assignment: the mesh differs"
     [ "$(near one)" = "$(near ranks)" ] || fail "$way: ranks: near interfaces"
@@ -124,7 +124,7 @@ vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 3 --write b8.ugri
 exits 0
 cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "the mesh depends on threads"
 if mpirun -n 2 true >/dev/null 2>&1; then
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/box \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/box \
     --decompose octree --subdomains 4 -t 1 --write b8.ugrid --out ranks >out 2>err ||
     fail "2 ranks: $(cat err)"
   cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "the mesh depends on ranks"

@@ -98,7 +98,7 @@ starts() {
   echo "$1" >queue/state
   (
     cd /
-    export ASAN_OPTIONS=detect_leaks=0   # of Open MPI
+    export ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0   # of Open MPI
     echo "$BASHPID" >"$QUEUE/pid"
     exec bash "$(cat "$QUEUE/script")"
   ) >>"$2/run.log" 2>&1

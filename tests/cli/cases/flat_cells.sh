@@ -70,7 +70,7 @@ exits 0
 flat threads >threads.flat
 same one.flat threads.flat
 if mpirun -n 2 true >/dev/null 2>&1; then
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 3 "$program" mesh $run --walls 1,2 \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 3 "$program" mesh $run --walls 1,2 \
     --leaf-cells 500 -t 1 --out ranks >out 2>err
   status=$?
   exits 0

@@ -42,7 +42,7 @@ for way in 'discrete' 'discrete --interfaces h-refine --partitioner rcb' \
   exists run/run.txt
   if [ -n "$launcher" ]; then
     # shellcheck disable=SC2086 # words
-    ASAN_OPTIONS=detect_leaks=0 $launcher "$program" "$@" -t 2 --out killed \
+    ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 $launcher "$program" "$@" -t 2 --out killed \
       --run-dir run --resume --keep-run >out 2>err || fail "$way: $(cat err)"
   else
     vanguard "$@" -t 2 --out killed --run-dir run --resume --keep-run

@@ -13,7 +13,7 @@ exits 0
 
 on_nodes() {   # on_nodes RANKS PER_NODE OPTION...; MPI itself leaks
   # shellcheck disable=SC2086
-  ASAN_OPTIONS=detect_leaks=0 timeout 120 mpirun -n "$1" --bind-to none "$program" mesh $options \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 timeout 120 mpirun -n "$1" --bind-to none "$program" mesh $options \
     --out many --test-node-ranks "$2" "${@:3}" >out 2>err
   status=$?
 }

@@ -17,7 +17,7 @@ has_mpirun=0
 ranks() {
   local n=$1
   shift
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n "$n" "$program" "$@" >out 2>err
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n "$n" "$program" "$@" >out 2>err
   status=$?
 }
 

@@ -341,7 +341,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
 kill "$server"
 wait "$server"
-ASAN_OPTIONS=detect_leaks=0 serve mine   # MPI itself leaks
+ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 serve mine   # MPI itself leaks
 posts 303 runs "${slow[@]}" -d ranks=2
 if timeout 20 mpirun -n 2 true >/dev/null 2>&1; then
   until_kept 0007

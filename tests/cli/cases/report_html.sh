@@ -62,7 +62,7 @@ exits 0
 stable resumed/box.report.html >resumed.html
 same one.html resumed.html
 if mpirun -n 2 true >/dev/null 2>&1; then
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 3 "$program" mesh $run $layers -t 1 \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 3 "$program" mesh $run $layers -t 1 \
     --out ranks >out 2>err
   status=$?
   exits 0

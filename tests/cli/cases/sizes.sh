@@ -45,7 +45,7 @@ vanguard mesh -q -p box --deck finer/box.resolved.deck --out again --threads 3
 exits 0
 cmp finer/box.b8.ugrid again/box.b8.ugrid || fail "threads differ"
 if mpirun -n 2 true >/dev/null 2>&1; then
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p box \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh -q -p box \
     --deck finer/box.resolved.deck --out ranks >out 2>err
   cmp finer/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks differ"
 fi

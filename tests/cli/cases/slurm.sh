@@ -127,7 +127,7 @@ absent o/box.run
 if [ -z "${VG_TEST_SLURM:-}" ]; then
   echo "sbatch is not tested: set VG_TEST_SLURM=1 for it"
 else
-  ASAN_OPTIONS=detect_leaks=0 "$here/../../verification/slurm.sh" \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 "$here/../../verification/slurm.sh" \
     --vanguard "$program" --work slurm --cells 400000 >out 2>err
   status=$?
   if [ $status = 77 ]; then tail -1 out

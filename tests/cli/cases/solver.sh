@@ -45,7 +45,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 if mpirun -n 2 true >/dev/null 2>&1; then
   # shellcheck disable=SC2086
-  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/wing-half \
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/wing-half \
     $layers -t 1 --solver-parts 4 --write vtu,pvtu --out ranks >out 2>err
   for file in wing-half.vtu wing-half.part.4 wing-half_0.vtu; do
     same two/$file ranks/$file
