@@ -153,7 +153,7 @@ static void box_has_even_edges(void **state)
 
 static void half_wing_stands_on_its_plane(void **state)
 {
-  struct vg_demo d = make("wing-half", 400000);
+  struct vg_demo d = make("wing-half", 100000);
   const struct vg_mesh *m = &d.surface;
   size_t n = 0;
 
@@ -200,7 +200,7 @@ static void wing_follows_its_sources(void **state)
 
 static void whole_wing_is_symmetric(void **state)
 {
-  struct vg_demo d = make("wing", 300000);
+  struct vg_demo d = make("wing", 100000);
   double left = 0, right = 0;
 
   (void)state;
@@ -229,8 +229,8 @@ static void refuses_impossible_demos(void **state)
 
 static void gives_the_same_bytes_twice(void **state)
 {
-  struct vg_demo a = make("wing-sharp-half", 200000),
-                 b = make("wing-sharp-half", 200000);
+  struct vg_demo a = make("wing-sharp-half", 50000),
+                 b = make("wing-sharp-half", 50000);
 
   (void)state;
   assert_int_equal(a.surface.n_point, b.surface.n_point);
