@@ -8,72 +8,11 @@
 #include <strings.h>
 
 #include "base/memory.h"
-#include "cli/plan/plan_estimate.h"
+#include "cli/plan/plan_output.h"
 #include "cli/plot/plot.h"
-#include "io/mesh/fluent.h"
-#include "io/mesh/foam.h"
 #include "partition/advance/ways.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
-
-/* --- files --------------------------------------------------------------- */
-
-/* Bytes per point, tetrahedron, prism and boundary triangle in each file
- * format. Binary formats: from their layouts. Text formats: measured on meshes
- * of some million cells. */
-static const struct form {
-  const char *word;
-  double point, tet, prism, face;
-} forms[] = {
-  { "b8.ugrid", 24, 16, 24, 16 },   { "lb8.ugrid", 24, 16, 24, 16 },
-  { "r8.ugrid", 24, 16, 24, 16 },   { "lr8.ugrid", 24, 16, 24, 16 },
-  { "b4.ugrid", 12, 16, 24, 16 },   { "lb4.ugrid", 12, 16, 24, 16 },
-  { "r4.ugrid", 12, 16, 24, 16 },   { "lr4.ugrid", 12, 16, 24, 16 },
-  { "b8l.ugrid", 24, 32, 48, 32 },  { "lb8l.ugrid", 24, 32, 48, 32 },
-  { "b8.ugrid64", 24, 32, 48, 32 }, { "lb8.ugrid64", 24, 32, 48, 32 },
-  { "ugrid", 51, 28, 42, 24 },      { "cogsg", 24, 16, 0, 41 },
-  { "vtu", 24, 49, 57, 49 },        { "pvtu", 28, 49, 57, 0 },
-  { "meshb", 28, 20, 28, 16 },      { "mesh", 56, 30, 44, 26 },
-  { "su2", 85, 43, 58, 26 },        { "msh", 32, 40, 56, 32 },
-  { "cgns", 24, 16, 24, 12 },
-};
-
-/* A Fluent file has one line per face, with the hexadecimal numbers of its
- * corners and two cells; all lines are assumed to have the same length. */
-static double fluent_bytes(const struct vg_plan *p)
-{
-  int is_mixed = p->prism > 0, width = 1;
-  double faces = 2 * p->tet + 2.5 * p->prism +
-                 0.5 * (double)p->problem.boundary.surface.n_tri;
-
-  for (double n = p->tet + p->prism; n >= 16; n /= 16) width++;
-  return 76 * p->point +
-         faces * ((is_mixed ? 6 : 5) * (width + 1) + 1 + is_mixed) +
-         (is_mixed ? 2 * (p->tet + p->prism) : 0);
-}
-
-double vg_plan_bytes(const struct vg_plan *p, const char *item)
-{
-  struct vg_foam_options foam;
-  double boundary = (double)p->problem.boundary.surface.n_tri;
-
-  if (!strcmp(item, "auto")) return 0;
-  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-    const struct form *f = &forms[i];
-
-    if (!strcasecmp(item, f->word))
-      return f->point * p->point + f->tet * p->tet + f->prism * p->prism +
-             f->face * boundary;
-  }
-  if (!strcasecmp(item, VG_FLUENT_SUFFIX)) return fluent_bytes(p);
-  if (vg_foam_word(item, &foam)) {
-    double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
-
-    return foam.is_ascii ? 58 * p->point + 46 * faces
-                         : 24 * p->point + 24 * faces;
-  }
-  return 0;
-}
 
 /* --- text ---------------------------------------------------------------- */
 
@@ -91,12 +30,12 @@ static const char *bytes(double n, char text[32])
 
 static void print_mesh(const struct vg_plan *p)
 {
-  const struct vg_notes *notes = &p->problem.notes;
+  const struct vg_notes *notes = &p->problem->notes;
   char a[32];
 
-  printf("%s\n\nExpected mesh\n", p->problem.asked.title);
+  printf("%s\n\nExpected mesh\n", p->problem->asked.title);
   printf("  %-24s %15s\n", "cells", count(p->cell, a));
-  if (p->layers.is_on) {
+  if (p->layers->is_on) {
     printf("  %-24s %15s  %s\n", "  in layers",
            count(p->prism > 0 ? p->prism : p->layer_tet, a),
            p->is_grown ? "(layers were grown)"
@@ -105,7 +44,7 @@ static void print_mesh(const struct vg_plan *p)
     printf("  %-24s %15s\n", "wall points", count((double)p->n_wall_point, a));
   }
   printf("  %-24s %15s\n", "points", count(p->point, a));
-  if (p->layers.is_on)
+  if (p->layers->is_on)
     printf("  %-24s %15s\n", "  in layers", count(p->layer_point, a));
   printf("  %-24s %15s\n", "triangles of the front",
          count((double)p->front->n_tri, a));
@@ -117,7 +56,7 @@ static void print_files(const struct vg_plan *p)
   char list[VG_WRITE_MAX], *save = NULL, text[32];
 
   printf("\nFiles\n");
-  memcpy(list, p->problem.resolved.settings.write, sizeof list);
+  memcpy(list, p->problem->resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
        word = strtok_r(NULL, " ,", &save)) {
     double size = vg_plan_bytes(p, word);
@@ -186,7 +125,7 @@ static void print_decomposition(const struct vg_plan *p)
 {
   const struct vg_plan_decomposition *q = &p->decomposition;
   const struct vg_decomposition_report *r = &q->made.report;
-  const char *way = vg_ways[p->problem.resolved.settings.decompose].name;
+  const char *way = vg_ways[p->problem->resolved.settings.decompose].name;
   char a[32], b[32], c[32];
 
   if (!q->n_part) return;
@@ -211,31 +150,31 @@ static size_t cuts(const struct vg_plan *p)
   return o->n_node - o->n_leaf - (p->decomposition.n_part > 0);
 }
 
-static void print_tree(const struct vg_plan *p)
+static void print_tree(const struct vg_plan *p, const struct vg_plan_options *o)
 {
-  const struct vg_forecast *o = &p->forecast;
+  const struct vg_forecast *f = &p->forecast;
   char a[32], b[32];
 
   printf("\nDomain decomposition\n  ");
   print_number(cuts(p), "cut");
   printf(" into ");
-  if (o->n_leaf == 1) printf("1 leaf; ");
-  else printf("%zu leaves; ", o->n_leaf);
-  print_number(o->n_pencil, "edge separator");
+  if (f->n_leaf == 1) printf("1 leaf; ");
+  else printf("%zu leaves; ", f->n_leaf);
+  print_number(f->n_pencil, "edge separator");
   printf(" and ");
-  print_number(o->n_tile, "face separator");
+  print_number(f->n_tile, "face separator");
   printf(" with %s cells (%.1f %%);\n  cells per leaf: max/mean %.2f\n",
-         count(o->separator_cells, a),
-         o->cells > 0 ? 100 * o->separator_cells / o->cells : 0, balance(o));
-  for (size_t i = 0; i < o->n_node; i++) {
-    const struct vg_forecast_node *n = &o->node[i];
+         count(f->separator_cells, a),
+         f->cells > 0 ? 100 * f->separator_cells / f->cells : 0, balance(f));
+  for (size_t i = 0; i < f->n_node; i++) {
+    const struct vg_forecast_node *n = &f->node[i];
 
-    if (n->depth >= p->o->depth || (vg_forecast_is_leaf(n) && i)) continue;
+    if (n->depth >= o->depth || (vg_forecast_is_leaf(n) && i)) continue;
     printf("  %*s%s: %s cells, %s in separators", 2 * n->depth, "", n->path,
            count(n->cells, a), count(n->zone, b));
     print_planes(&n->lattice);
     printf("\n");
-    print_leaves(o, i, n->depth + 1);
+    print_leaves(f, i, n->depth + 1);
   }
 }
 
@@ -249,30 +188,30 @@ static void print_row(const struct vg_plan_row *r)
          100 * r->tasks.cuts_extra, r->memory / 1e6);
 }
 
-static void print_best(const struct vg_plan *p)
+static void print_best(const struct vg_plan *p, const struct vg_plan_options *o)
 {
   const struct vg_plan_row *r;
   const char *why = "most workers with at least 80 % efficiency";
   char text[64] = "", cells[32];
 
   if (p->best == SIZE_MAX) {
-    if (p->o->target > 0)
-      printf("\nNo machine in the list takes %g s or less.\n", p->o->target);
+    if (o->target > 0)
+      printf("\nNo machine in the list takes %g s or less.\n", o->target);
     else printf("\nNo machine in the list reaches 80 %% efficiency.\n");
     r = &p->row[p->n_row - 1];
     snprintf(text, sizeof text, "Times with");
   } else {
     r = &p->row[p->best];
-    if (p->o->target > 0) why = "fewest workers that meet the target";
+    if (o->target > 0) why = "fewest workers that meet the target";
     printf("\nBest: %d rank%s x %d thread%s, %.2f s (%s)\n", r->ranks,
            r->ranks > 1 ? "s" : "", r->threads, r->threads > 1 ? "s" : "",
            r->wall, why);
     snprintf(text, sizeof text, "Times with");
   }
-  if (p->o->cores)
+  if (o->cores)
     printf("Start: mpirun -n %d --map-by ppr:%d:node:PE=%d vanguard mesh -p %s "
            "--threads %d\n",
-           r->ranks, r->ranks_per_node, r->threads, p->o->project, r->threads);
+           r->ranks, r->ranks_per_node, r->threads, o->project, r->threads);
   if (!p->n_leaf) return;
   printf("%s %d x %d by leaf_cells:\n   leaf_cells  leaves    time, s   tasks, "
          "s\n",
@@ -328,12 +267,9 @@ static void print_limits(const struct vg_plan *p)
   }
 }
 
-static const struct {
-  const char *key, *text;
-} memory_stage[VG_MEMORY_STAGES] = { { "surface", "surface" },
-                                     { "sizes", "sizing field and layers" },
-                                     { "fill", "fill" },
-                                     { "check", "mesh check and files" } };
+static const char *const memory_stage[VG_MEMORY_STAGES] = {
+  "surface", "sizing field and layers", "fill", "mesh check and files"
+};
 
 static void print_memory(const struct vg_plan *p)
 {
@@ -342,7 +278,7 @@ static void print_memory(const struct vg_plan *p)
 
   printf("\nMemory of a rank with %d x %d\n", r->ranks, r->threads);
   for (int i = 0; i < VG_MEMORY_STAGES; i++)
-    printf("  %-24s %15s\n", memory_stage[i].text, bytes(r->stage[i], text));
+    printf("  %-24s %15s\n", memory_stage[i], bytes(r->stage[i], text));
   printf("  %-24s %15s\n", "one copy per node", bytes(p->shared, text));
 }
 
@@ -353,12 +289,13 @@ static const char *kind_name(char kind)
                                 : "tiles";
 }
 
-static void print_rates(const struct vg_plan *p)
+static void print_rates(const struct vg_plan *p,
+                        const struct vg_plan_options *o)
 {
-  if (!p->o->rates) return;
-  printf("\nTask times, fitted to %s\n", p->o->rates);
+  if (!o->rates) return;
+  printf("\nTask times, fitted to %s\n", o->rates);
   for (int k = 0; k < VG_RATE_FITS; k++) {
-    const struct vg_rate_fit *f = &p->fit[k];
+    const struct vg_rate_fit *f = &p->o->fit[k];
 
     if (f->n)
       printf("  %-8s %.3f us per cell, %.3f us per face of the front; %zu "
@@ -377,13 +314,13 @@ static double outside(const struct vg_plan *p)
   return sum;
 }
 
-void vg_plan_text(const struct vg_plan *p)
+void vg_plan_text(const struct vg_plan *p, const struct vg_plan_options *o)
 {
   print_mesh(p);
   print_files(p);
   print_decomposition(p);
-  print_tree(p);
-  print_rates(p);
+  print_tree(p, o);
+  print_rates(p, o);
   printf(
     "\nForecast: on one core %.2f s outside the tasks and %.2f s in tasks, of "
     "which %.2f s in loops\n  of front updates (joins), which idle threads of "
@@ -396,7 +333,7 @@ void vg_plan_text(const struct vg_plan *p)
   for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
   print_limits(p);
   print_memory(p);
-  print_best(p);
+  print_best(p, o);
 }
 
 /* --- JSON ---------------------------------------------------------------- */
@@ -416,7 +353,8 @@ static json_t *row_json(const struct vg_plan_row *r)
   json_t *memory = json_object();
 
   for (int i = 0; i < VG_MEMORY_STAGES; i++)
-    json_object_set_new(memory, memory_stage[i].key, json_real(r->stage[i]));
+    json_object_set_new(memory, vg_memory_stage_name((enum vg_memory_stage)i),
+                        json_real(r->stage[i]));
   json_object_set_new(o, "memory_stages", memory);
   return o;
 }
@@ -450,7 +388,7 @@ static json_t *mesh_json(const struct vg_plan *p)
                         p->point, "tetrahedra", p->tet, "prisms", p->prism,
                         "field_cells", p->load.cells);
 
-  if (!p->layers.is_on) return o;
+  if (!p->layers->is_on) return o;
   json_object_set_new(o, "layers",
                       json_pack("{s:f s:f s:s s:I}", "tetrahedra", p->layer_tet,
                                 "points", p->layer_point, "source",
@@ -464,7 +402,7 @@ static json_t *files_json(const struct vg_plan *p)
   char list[VG_WRITE_MAX], *save = NULL;
   json_t *o = json_object();
 
-  memcpy(list, p->problem.resolved.settings.write, sizeof list);
+  memcpy(list, p->problem->resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
        word = strtok_r(NULL, " ,", &save))
     json_object_set_new(o, word, json_real(vg_plan_bytes(p, word)));
@@ -476,7 +414,7 @@ static json_t *decomposition_json(const struct vg_plan *p)
   const struct vg_plan_decomposition *q = &p->decomposition;
 
   return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
-                   vg_ways[p->problem.resolved.settings.decompose].name,
+                   vg_ways[p->problem->resolved.settings.decompose].name,
                    "parts", (json_int_t)q->n_part, "complete_subdomains",
                    (json_int_t)q->n_whole, "gap_parts",
                    (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
@@ -507,13 +445,14 @@ static json_t *rates_json(const struct vg_plan *p)
   json_t *list = json_array();
 
   for (int k = 0; k < VG_RATE_FITS; k++)
-    if (p->fit[k].n)
-      json_array_append_new(list, json_pack("{s:s s:I s:f s:f s:f}", "tasks",
-                                            kind_name(p->fit[k].kind), "n",
-                                            (json_int_t)p->fit[k].n,
-                                            "seconds_per_cell", p->fit[k].cell,
-                                            "seconds_per_face", p->fit[k].face,
-                                            "error", p->fit[k].error));
+    if (p->o->fit[k].n)
+      json_array_append_new(list,
+                            json_pack("{s:s s:I s:f s:f s:f}", "tasks",
+                                      kind_name(p->o->fit[k].kind), "n",
+                                      (json_int_t)p->o->fit[k].n,
+                                      "seconds_per_cell", p->o->fit[k].cell,
+                                      "seconds_per_face", p->o->fit[k].face,
+                                      "error", p->o->fit[k].error));
   return list;
 }
 
@@ -556,11 +495,11 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_t *o = json_object(), *rows = json_array();
   int bad;
 
-  json_object_set_new(o, "title", vg_text_json(p->problem.asked.title));
+  json_object_set_new(o, "title", vg_text_json(p->problem->asked.title));
   json_object_set_new(o, "mesh", mesh_json(p));
   json_object_set_new(o, "sources",
                       vg_effects_json(&p->effects, p->front,
-                                      &p->problem.resolved.settings));
+                                      &p->problem->resolved.settings));
   json_object_set_new(o, "files", files_json(p));
   json_object_set_new(o, "memory", json_pack("{s:f}", "shared", p->shared));
   if (p->decomposition.n_part)
@@ -596,7 +535,8 @@ static int by_workers(const void *a, const void *b)
   return n != m ? n - m : s->ranks - t->ranks;
 }
 
-vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err)
+vg_status vg_plan_draw(const struct vg_plan *p, const char *plot,
+                       struct vg_error *err)
 {
   size_t n = p->n_row;
   struct vg_plan_row *row = vg_alloc(n, sizeof *row);
@@ -616,8 +556,8 @@ vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err)
     v[n + i] = row[i].speedup;
     v[2 * n + i] = row[i].tasks.speedup;
   }
-  st = vg_plot_speedup(p->o->plot, p->problem.asked.title,
-                       "forecast from the load", 2, line, err);
+  st = vg_plot_speedup(plot, p->problem->asked.title, "forecast from the load",
+                       2, line, err);
 done:
   free(row);
   free(v);

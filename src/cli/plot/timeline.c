@@ -66,41 +66,12 @@ static const struct table help_table = {
   HELP_N, HELP_N, { "path", "rank", "thread", "start", "end" }
 };
 
-/* Names and labels of the phases, their keys in the facts, whether they count
- * as outside the tasks, and the fractions of their time that one thread does
- * alone and that every node does for itself; the remainder is parallel over all
- * workers. Fractions are from profiles of one thread (M8). */
-static const struct {
-  const char *name, *label, *key;
-  int is_outside;
-  double alone, by_node;
-} phases[VG_PHASE_N] = {
-  { "read", "read", "seconds_read", 0, 1, 0 },
-  { "check", "surface check", "seconds_check", 1, 0.2, 0.8 },
-  { "sizes", "sizing field", "seconds_sizes", 1, 0.05, 0.20 },
-  { "layers", "layers", "seconds_layers", 1, 0.12, 0.27 },
-  { "cut+fill", "cut+fill", "seconds_cut_fill", 0, 1, 0 },
-  { "number", "numbering", "seconds_number", 0, 1, 0 },
-  { "judge", "mesh check", "seconds_judge", 1, 0.01, 0 },
-  { "write", "write", "seconds_write", 1, 0.4, 0 },
-  { "total", "total", "seconds_total", 0, 1, 0 },
+/* Keys of the phases' times in the facts. */
+static const char *const phase_key[VG_PHASE_N] = {
+  "seconds_read",   "seconds_check",    "seconds_sizes",
+  "seconds_layers", "seconds_cut_fill", "seconds_number",
+  "seconds_judge",  "seconds_write",    "seconds_total",
 };
-
-const char *vg_phase_name(enum vg_phase phase)
-{
-  return phases[phase].name;
-}
-
-const char *vg_phase_label(enum vg_phase phase)
-{
-  return phases[phase].label;
-}
-
-void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node)
-{
-  *alone = phases[phase].alone;
-  *by_node = phases[phase].by_node;
-}
 
 void vg_timeline_release(struct vg_timeline *t)
 {
@@ -115,13 +86,14 @@ void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m)
 
   m->serial = m->by_node = m->by_all = 0;
   for (int k = 0; k < VG_PHASE_N; k++) {
-    double alone = phases[k].alone, one;
+    double alone, by_node, one;
 
-    if (!phases[k].is_outside) continue;
+    if (!vg_phase_is_outside((enum vg_phase)k)) continue;
+    vg_phase_shares((enum vg_phase)k, &alone, &by_node);
     one = t->seconds[k] / (alone + (1 - alone) / workers);
     m->serial += alone * one;
-    m->by_node += phases[k].by_node * one;
-    m->by_all += (1 - alone - phases[k].by_node) * one;
+    m->by_node += by_node * one;
+    m->by_all += (1 - alone - by_node) * one;
     rest -= t->seconds[k];
   }
   if (rest > 0) m->serial += rest;
@@ -156,7 +128,7 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
                    (unsigned long long)t->n_point, t->cyclic);
   put_string(out, t->digest);
   for (int i = 0; i < VG_PHASE_N; i++) {
-    vg_output_format(out, ",%s\"%s\": ", i % 4 ? " " : "\n ", phases[i].key);
+    vg_output_format(out, ",%s\"%s\": ", i % 4 ? " " : "\n ", phase_key[i]);
     put_seconds(out, i == VG_PHASE_ENGINE ? t->spans.wall : t->seconds[i]);
   }
   vg_output_text(out, "},\n");
@@ -331,8 +303,8 @@ static vg_status get_facts(const char *name, const json_t *root,
     VG_TRY(get_count(&at, o, "cyclic", 1, &cyclic, err));
   t->cyclic = (int)cyclic;
   for (int i = 0; i < VG_PHASE_N; i++)
-    if ((o = json_object_get(facts, phases[i].key)))
-      VG_TRY(get_real(&at, o, phases[i].key, SECONDS_MAX, &t->seconds[i], err));
+    if ((o = json_object_get(facts, phase_key[i])))
+      VG_TRY(get_real(&at, o, phase_key[i], SECONDS_MAX, &t->seconds[i], err));
   t->spans.wall = t->seconds[VG_PHASE_ENGINE];
 done:
   return st;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plot/timeline.h: the trace of a run as a file, STEM.timeline.json: facts
  * of the run and the tasks of each worker with their times. vanguard plan
- * replays it, and vanguard sweep plots it. Uses partition/model/model.h.
+ * replays it, and vanguard sweep plots it. Uses partition/model/model.h and
+ * partition/model/phase.h.
  *
  *   {"vanguard_timeline": 1,
  *    "facts": {"title": "wing", "ranks": 2, "threads": 4, "cells": 123,
@@ -25,32 +26,7 @@
 
 #include "base/status.h"
 #include "partition/model/model.h"
-
-/* Phases of a run in order. VG_PHASE_ENGINE is cutting and filling. */
-enum vg_phase {
-  VG_PHASE_READ,
-  VG_PHASE_CHECK,
-  VG_PHASE_SIZES,
-  VG_PHASE_LAYERS,
-  VG_PHASE_ENGINE,
-  VG_PHASE_NUMBER,
-  VG_PHASE_JUDGE,
-  VG_PHASE_WRITE,
-  VG_PHASE_TOTAL,
-  VG_PHASE_N
-};
-
-/** "read", "check", "sizes", "layers", "cut+fill", "number", "judge", "write",
- * "total". Static storage. */
-const char *vg_phase_name(enum vg_phase phase);
-
-/** Name of a phase in texts and plots: "surface check", ... Static storage. */
-const char *vg_phase_label(enum vg_phase phase);
-
-/** Fractions of the time of a phase on one core that one thread does alone, and
- * that every node does for itself; the remainder is parallel over all workers
- * (row M8). */
-void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node);
+#include "partition/model/phase.h"
 
 /** Largest number of ranks, and of threads per rank, in a file. */
 #define VG_TIMELINE_MAX (1 << 20)

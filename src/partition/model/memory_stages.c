@@ -35,6 +35,14 @@ static const double between_triangle = 142, between_column = 330,
 static const double judge_triangle = 60, judge_heap = 4.5, judge_thread = 12e6,
                     slice_cell = 40, page_pictures = 12e6;
 
+const char *vg_memory_stage_name(enum vg_memory_stage stage)
+{
+  static const char *const name[VG_MEMORY_STAGES] = { "surface", "sizes",
+                                                      "fill", "check" };
+
+  return name[stage];
+}
+
 void vg_memory_of_tasks(const struct vg_forecast *o, struct vg_memory_counts *c)
 {
   c->largest_leaf = 0;

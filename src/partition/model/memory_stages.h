@@ -16,6 +16,9 @@ enum vg_memory_stage {
   VG_MEMORY_STAGES
 };
 
+/** "surface", "sizes", "fill", "check". Static storage. */
+const char *vg_memory_stage_name(enum vg_memory_stage stage);
+
 struct vg_memory_counts {
   double triangles, columns; /* Of the front; wall points. */
   double leaves;             /* Of the octree of sizes. */

@@ -2,7 +2,7 @@
 /* Memory of a rank in each stage of a run, from the counts of the forecast. */
 #include <assert.h>
 
-#include "cli/plan/plan_estimate.h"
+#include "run/plan/run_plan_parts.h"
 
 static struct vg_memory_counts counts_of(const struct vg_plan *p)
 {
@@ -12,7 +12,7 @@ static struct vg_memory_counts counts_of(const struct vg_plan *p)
     .leaves = (double)vg_sizing_leaves(p->sizing) * p->finer,
     .is_stretched = vg_sizing_is_stretched(p->sizing),
     .cells = p->load.cells,
-    .has_pictures = p->problem.resolved.settings.report_html
+    .has_pictures = p->problem->resolved.settings.report_html
   };
 }
 
@@ -33,6 +33,6 @@ void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
   vg_memory_of_tasks(o, &c);
   vg_memory_stages(&c, ranks, threads, stage);
   for (int i = 0; i < VG_MEMORY_STAGES; i++)
-    stage[i] += p->program + mpi + p->shared;
+    stage[i] += p->o->program + mpi + p->shared;
   stage[VG_MEMORY_SURFACE] = p->surface_peak + mpi;
 }

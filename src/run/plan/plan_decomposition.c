@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "cli/plan/plan_estimate.h"
+#include "run/plan/run_plan_parts.h"
 #include "partition/advance/ways.h"
 #include "run/settings/plan_options.h"
 
@@ -46,7 +46,7 @@ static vg_status weigh_parts(const struct vg_load *load,
 
 static struct vg_decomposition_options options_of(const struct vg_plan *p)
 {
-  const struct vg_settings *s = &p->problem.resolved.settings;
+  const struct vg_settings *s = &p->problem->resolved.settings;
   struct vg_decomposition_options o = vg_options_decomposition(s);
 
   if (!o.n_part)
@@ -57,7 +57,7 @@ static struct vg_decomposition_options options_of(const struct vg_plan *p)
 
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_way *way = &vg_ways[p->problem.resolved.settings.decompose];
+  const struct vg_way *way = &vg_ways[p->problem->resolved.settings.decompose];
   struct vg_front f = vg_front_of(p->front);
   struct vg_decomposition_options o = options_of(p);
   double t = vg_clock();
@@ -83,7 +83,7 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          struct vg_forecast *out, struct vg_error *err)
 {
   const struct vg_plan_decomposition *q = &p->decomposition;
-  const struct vg_settings *s = &p->problem.resolved.settings;
+  const struct vg_settings *s = &p->problem->resolved.settings;
   struct vg_forecast_part *part = vg_calloc(q->n_part, sizeof *part);
   struct vg_forecast_decomposition all = {
     s->decompose == VG_DECOMPOSE_OCTREE ? &p->rates.octree : &p->rates.discrete,
