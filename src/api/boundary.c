@@ -20,11 +20,12 @@ static vg_status checked(vanguard_job *job)
 
   if (job->is_refused) return VG_ERR_USAGE;
   if (b->read && b->check.face_kinds) return VG_OK;
-  return vg_fail(&job->err, VG_ERR_USAGE,
-                 "there is no surface: vanguard_check, vanguard_make_surface "
-                 "or vanguard_mesh has not been called, has failed before the "
-                 "surface was checked, or this is not the first rank of its "
-                 "node");
+  return vg_fail(
+    &job->err, VG_ERR_USAGE,
+    "there is no surface: vanguard_check, vanguard_forecast, "
+    "vanguard_make_surface or vanguard_mesh has not been called, has failed before the "
+    "surface was checked, or this is not the first rank of its "
+    "node");
 }
 
 vanguard_status vanguard_boundary(vanguard_job *job,
@@ -142,9 +143,9 @@ static vg_status make_report(vanguard_job *job, int is_json)
   if (job->is_refused) return VG_ERR_USAGE;
   if (!job->times.start)
     return vg_fail(&job->err, VG_ERR_USAGE,
-                   "there is no report: neither vanguard_mesh nor "
-                   "vanguard_check, vanguard_make_surface or vanguard_read has "
-                   "been called");
+                   "there is no report: none of vanguard_mesh, "
+                   "vanguard_check, vanguard_forecast, vanguard_make_surface "
+                   "and vanguard_read has been called");
   free(job->report);
   if (job->run.rank) job->report = strdup("");
   else {

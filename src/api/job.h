@@ -11,6 +11,7 @@
 #include "core/sizing/sizing_mesh.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
+#include "run/plan/run_plan.h"
 #include "run/stages/file_mesh.h"
 #include "run/stages/report_run.h"
 
@@ -98,6 +99,21 @@ void vg_job_leave(const vanguard_job *const *job);
 /** Prepare a job for a run: the last one is released, and the callback and the
  * ranks are those of the new one. */
 void vg_job_begin(vanguard_job *job, vanguard_progress *progress, void *user);
+
+/** What a run makes; FORECAST is BOUNDARY with a forecast. */
+enum vg_job_goal {
+  VG_JOB_SURFACE,
+  VG_JOB_BOUNDARY,
+  VG_JOB_FORECAST,
+  VG_JOB_MESH
+};
+
+/** Release the last run and make another one. plan: that of VG_JOB_FORECAST,
+ * with the problem, the layers and the progress of the job; else NULL.
+ * (mesh.c) */
+vg_status vg_job_run(vanguard_job *job, enum vg_job_goal goal,
+                     struct vg_plan *plan, vanguard_progress *progress,
+                     void *user);
 
 /** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshing: vanguard_mesh of api/vanguard.h. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -152,9 +153,6 @@ static void describe_surface(vanguard_job *job)
   }
 }
 
-/* What a run makes; each includes the one before. */
-enum goal { GOAL_SURFACE, GOAL_BOUNDARY, GOAL_MESH };
-
 /* The surface without a farfield or symmetry plane, as vanguard surface makes
  * it. */
 static vg_status make_surface(vanguard_job *job)
@@ -195,21 +193,41 @@ done:
   return st;
 }
 
-static vg_status make(vanguard_job *job, enum goal goal)
+static vg_status make_forecast(vanguard_job *job, struct vg_plan *plan)
+{
+  vg_status st = vg_plan_make(plan, &job->err);
+
+  if (st >= 0) vg_boundary_finish_conditions(&job->problem.boundary);
+  return st;
+}
+
+/* The surface of a run and, with a plan, the forecast. */
+static vg_status make_boundary(vanguard_job *job, enum vg_job_goal goal,
+                               struct vg_plan *plan)
+{
+  switch (goal) {
+  case VG_JOB_SURFACE: return make_surface(job);
+  case VG_JOB_FORECAST: return make_forecast(job, plan);
+  default:
+    return vg_run_surface(&job->run, &job->problem, &job->layers, &job->show,
+                          &job->err);
+  }
+}
+
+static vg_status make(vanguard_job *job, enum vg_job_goal goal,
+                      struct vg_plan *plan)
 {
   double t = vg_display_now();
   vg_status st;
 
+  if (plan) vg_plan_begin(plan);
   vg_display_update(&job->show, "read", 0, 0);
   VG_TRY(read_input(job));
   job->times.read = vg_display_now() - t;
   t = vg_display_now();
-  st = goal == GOAL_SURFACE
-       ? make_surface(job)
-       : vg_run_surface(&job->run, &job->problem, &job->layers, &job->show,
-                        &job->err);
+  st = make_boundary(job, goal, plan);
   job->times.check = vg_display_now() - t;
-  if (st >= 0 && goal == GOAL_MESH) st = make_mesh(job);
+  if (st >= 0 && goal == VG_JOB_MESH) st = make_mesh(job);
 done:
   return st;
 }
@@ -232,40 +250,44 @@ void vg_job_begin(vanguard_job *job, vanguard_progress *progress, void *user)
   r->options.change = VG_AGREE_NOTHING;
 }
 
-static vanguard_status run(vanguard_job *job, enum goal goal,
-                           vanguard_progress *progress, void *user)
+vg_status vg_job_run(vanguard_job *job, enum vg_job_goal goal,
+                     struct vg_plan *plan, vanguard_progress *progress,
+                     void *user)
 {
-  VG_JOB_CALL(job);
   vg_status st = vg_job_usable(job);
   void *before; /* the helpers of this thread: a callback of another job may
                    have called us */
 
-  if (st < 0) return vg_job_status(st);
+  if (st < 0) return st;
+  assert((goal == VG_JOB_FORECAST) == (plan != NULL));
   vg_job_begin(job, progress, user);
   before = vg_thread_data();
-  st = make(job, goal);
+  st = make(job, goal, plan);
   vg_thread_data_set(before);
   describe_surface(job);
   if (st < 0) job->failure = job->err;
   job->times.total = vg_display_now() - job->times.start;
-  job->is_meshed = st >= 0 && goal == GOAL_MESH;
-  return vg_job_status(st);
+  job->is_meshed = st >= 0 && goal == VG_JOB_MESH;
+  return st;
 }
 
 vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
                               void *user)
 {
-  return run(job, GOAL_MESH, progress, user);
+  VG_JOB_CALL(job);
+  return vg_job_status(vg_job_run(job, VG_JOB_MESH, NULL, progress, user));
 }
 
 vanguard_status vanguard_check(vanguard_job *job, vanguard_progress *progress,
                                void *user)
 {
-  return run(job, GOAL_BOUNDARY, progress, user);
+  VG_JOB_CALL(job);
+  return vg_job_status(vg_job_run(job, VG_JOB_BOUNDARY, NULL, progress, user));
 }
 
 vanguard_status vanguard_make_surface(vanguard_job *job,
                                       vanguard_progress *progress, void *user)
 {
-  return run(job, GOAL_SURFACE, progress, user);
+  VG_JOB_CALL(job);
+  return vg_job_status(vg_job_run(job, VG_JOB_SURFACE, NULL, progress, user));
 }

@@ -293,11 +293,11 @@ VANGUARD_API vanguard_status vanguard_mesh(vanguard_job *job,
                                            vanguard_progress *progress,
                                            void *user);
 
-/** Stop a running vanguard_mesh, vanguard_check, vanguard_make_surface or
- * vanguard_write, which then returns VANGUARD_ERR_STOPPED within about a
- * second, on all ranks. Only formats that need the whole mesh in one piece
- * (vanguard_write) may take longer to write. Has no effect if none is running.
- * May be called by any thread and from a signal handler. */
+/** Stop a running vanguard_mesh, vanguard_check, vanguard_make_surface,
+ * vanguard_forecast or vanguard_write, which then returns VANGUARD_ERR_STOPPED
+ * within about a second, on all ranks. Only formats that need the whole mesh in
+ * one piece (vanguard_write) may take longer to write. Has no effect if none is
+ * running. May be called by any thread and from a signal handler. */
 VANGUARD_API void vanguard_cancel(vanguard_job *job);
 
 /** Read, repair, remesh and complete the surface as vanguard_mesh does, decide
@@ -318,6 +318,54 @@ VANGUARD_API vanguard_status vanguard_make_surface(vanguard_job *job,
                                                    vanguard_progress *progress,
                                                    void *user);
 
+/** Forecast of a mesh and of the run that makes it. Counts are expected numbers
+ * and not rounded. */
+struct vanguard_forecast {
+  size_t struct_size;
+  int32_t ranks, threads; /* machine of the forecast; threads of a rank */
+  double n_cell, n_tet, n_pri, n_point;
+  double n_layer_cell, n_layer_point; /* of these, in the layers */
+  double n_wall_point;                /* points from which layers grow */
+  int32_t has_grown_layers; /* 1: the layers were grown; 0: there are none, or
+                               they were estimated from the growth law */
+  size_t n_subdomain;       /* subdomains that one thread fills at a time */
+  double seconds;           /* of the whole run on this machine */
+  double work;              /* of one thread for the same run */
+  /* Bytes of the rank that needs most: at most, in each of the stages, and the
+   * part of which the ranks of a node have one copy. */
+  double memory;
+  double memory_surface, memory_sizes, memory_fill, memory_check;
+  double memory_shared;
+  const char *peak_stage; /* "surface", "sizes", "fill" or "check": the stage
+                             of `memory` */
+  double bytes_written;   /* files of the setting "write" */
+};
+
+/** Forecast the mesh and its run on another machine, or on this one, as
+ * `vanguard plan` does. The surface is made as by vanguard_check, layers on up
+ * to 50,000 wall points are grown, and the void is not filled: the cells follow
+ * from the sizing field. Discards the mesh, as vanguard_mesh does;
+ * vanguard_boundary, vanguard_details, vanguard_note and vanguard_report then
+ * have the results of vanguard_check.
+ *
+ * Cells are within some per cent of those of the mesh. Times hold for cores on
+ * which the built-in rates were measured (docs/reference/commands.md). Times of
+ * the surface and the sizing field, and the memory of the program, are those of
+ * this process. The call uses the setting "threads" here. For jobs of one
+ * process, whatever `ranks` is.
+ *
+ * @param ranks    ranks of the run, on one node, 1 to 2^20 with all threads
+ * @param threads  threads of a rank; 0: the setting "threads", or without it
+ *                 the cores of this process
+ * @param out      unchanged on failure
+ * VANGUARD_ERR_INPUT: ranks or threads are out of range. The errors of
+ * vanguard_check. */
+VANGUARD_API vanguard_status vanguard_forecast(vanguard_job *job, int ranks,
+                                               int threads,
+                                               vanguard_progress *progress,
+                                               void *user,
+                                               struct vanguard_forecast *out);
+
 /** Read a mesh from a file in one of the formats that `vanguard check` reads;
  * names and conditions of patches come from the setting "mapbc", or from
  * STEM.mapbc. The job then has this mesh instead of one of its own, for the
@@ -330,10 +378,10 @@ VANGUARD_API vanguard_status vanguard_make_surface(vanguard_job *job,
 VANGUARD_API vanguard_status vanguard_read(vanguard_job *job, const char *file);
 
 /* --- the surface --------------------------------------------------------- */
-/* The functions below need the surface of vanguard_check, vanguard_make_surface
- * or vanguard_mesh, which may have been refused for its defects. They are
- * available on the first rank of each node. Returned pointers are valid until
- * the next of these calls, vanguard_read or vanguard_free. */
+/* The functions below need the surface of vanguard_check, vanguard_forecast,
+ * vanguard_make_surface or vanguard_mesh, which may have been refused for its
+ * defects. They are available on the first rank of each node. Returned pointers
+ * are valid until the next of these calls, vanguard_read or vanguard_free. */
 
 struct vanguard_patch {
   size_t struct_size;
@@ -374,8 +422,8 @@ VANGUARD_API vanguard_status vanguard_boundary_arrays(vanguard_job *job,
                                                       uint32_t *tri,
                                                       uint32_t *patch);
 
-/** Report on the last vanguard_mesh, vanguard_check, vanguard_make_surface or
- * vanguard_read, also if it has failed.
+/** Report on the last vanguard_mesh, vanguard_check, vanguard_forecast,
+ * vanguard_make_surface or vanguard_read, also if it has failed.
  *
  * @param form  "json": the members of the .report.json of `vanguard mesh`
  *              (docs/reference/programs.md) without "files"; after

@@ -442,6 +442,25 @@ static void call_sizes(void)
   }
 }
 
+/* A size of a structure that is right, not set, or that of an older program. */
+static size_t some_size(size_t whole)
+{
+  return pick(6) ? whole : pick(3) ? whole / 2 / 8 * 8 : pick(9);
+}
+
+static void call_forecast(vanguard_job *j)
+{
+  static const int ranks[] = { 1, 1, 3, 64, 0, -1, INT32_MAX };
+  static const int threads[] = { 0, 1, 2, 8, -1, INT32_MAX };
+  struct vanguard_forecast f = { .struct_size = some_size(sizeof f) };
+
+  if (expect(j, vanguard_forecast(j, ONE_OF(ranks), ONE_OF(threads),
+                                  pick(2) ? progress : NULL, j,
+                                  pick(12) ? &f : NULL)) &&
+      f.struct_size == sizeof f)
+    assert_true(f.n_cell > 0 && f.seconds > 0 && f.memory > 0 && *f.peak_stage);
+}
+
 static void call_mesh(void)
 {
   vanguard_job *j = some_job();
@@ -466,6 +485,10 @@ static void call_mesh(void)
     expect(j, vanguard_read(j, ONE_OF(file)));
     return;
   }
+  if (!pick(8)) {
+    call_forecast(j);
+    return;
+  }
   if (pick(3)) vanguard_set(j, "max_cells", "20000");
   n_mesh++;
   n_meshed += (size_t)expect(j, vanguard_mesh(j, pick(2) ? progress : NULL, j));
@@ -474,12 +497,6 @@ static void call_mesh(void)
 static size_t some_index(void)
 {
   return pick(4) ? pick(3) : pick(2) ? SIZE_MAX : 1000;
-}
-
-/* A size of a structure that is right, not set, or that of an older program. */
-static size_t some_size(size_t whole)
-{
-  return pick(6) ? whole : pick(3) ? whole / 2 / 8 * 8 : pick(9);
 }
 
 #define ASK(function, type, ...)                                               \

@@ -123,6 +123,28 @@ static void it_stops_in_every_phase(void **state)
   vanguard_free(job);
 }
 
+static void a_forecast_stops_in_every_phase(void **state)
+{
+  static const char *const phase[] = { "read", "surface check", "sizing field",
+                                       "forecast" };
+  struct vanguard_forecast f = VANGUARD_INIT(f);
+  vanguard_job *job = new_box();
+
+  (void)state;
+  for (size_t i = 0; i < sizeof phase / sizeof *phase; i++) {
+    struct watch w = { .stop_at = phase[i] };
+
+    assert_int_equal(vanguard_forecast(job, 1, 1, stop_at, &w, &f),
+                     VANGUARD_ERR_STOPPED);
+    assert_true(w.is_asked);
+    assert_int_equal(w.n_later, 0);
+    assert_true(f.n_cell == 0);
+  }
+  assert_int_equal(vanguard_forecast(job, 1, 1, NULL, NULL, &f), 0);
+  assert_true(f.n_cell > 1000);
+  vanguard_free(job);
+}
+
 /* Reading CAD is one call of another library, in a child process. */
 static void it_stops_while_cad_is_read(void **state)
 {
@@ -199,6 +221,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_stops_in_every_phase),
+    cmocka_unit_test(a_forecast_stops_in_every_phase),
     cmocka_unit_test(it_stops_while_cad_is_read),
     cmocka_unit_test(it_stops_while_files_are_written),
   };

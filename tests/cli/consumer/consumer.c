@@ -637,6 +637,39 @@ static void checks_surfaces(void)
   vanguard_free(job);
 }
 
+/* The expected mesh and its run, without a mesh; a mesh made before is
+ * discarded. */
+static void forecasts(void)
+{
+  vanguard_job *job = new_cube();
+  struct vanguard_forecast f = VANGUARD_INIT(f), part = { 0 };
+  struct vanguard_boundary b = VANGUARD_INIT(b);
+  struct vanguard_counts n = VANGUARD_INIT(n);
+
+  CHECK(!vanguard_set(job, "hmax", "0.1") && !vanguard_mesh(job, NULL, NULL));
+  CHECK(!vanguard_count(job, &n));
+  CHECK(vanguard_forecast(job, 1, 1, NULL, NULL, NULL) == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_forecast(job, 1, 1, NULL, NULL, &part) == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_forecast(job, 0, 1, NULL, NULL, &f) == VANGUARD_ERR_INPUT);
+  CHECK(vanguard_forecast(job, 1, -1, NULL, NULL, &f) == VANGUARD_ERR_INPUT);
+  CHECK(vanguard_forecast(job, 1 << 20, 2, NULL, NULL, &f) ==
+        VANGUARD_ERR_INPUT);
+  CHECK(!vanguard_count(job, &n));
+  CHECK(!vanguard_forecast(job, 4, 2, NULL, NULL, &f));
+  CHECK(vanguard_count(job, &n) == VANGUARD_ERR_USAGE);
+  CHECK(f.ranks == 4 && f.threads == 2 && f.n_tet == f.n_cell && !f.n_pri);
+  CHECK(f.n_tet > 0.75 * (double)n.n_tet && f.n_tet < 1.33 * (double)n.n_tet);
+  CHECK(f.seconds > 0 && f.work >= f.seconds && f.n_subdomain > 0);
+  CHECK(f.memory > f.memory_shared && f.memory >= f.memory_fill);
+  CHECK(strstr("surface sizes fill check", f.peak_stage));
+  CHECK(!vanguard_boundary(job, &b) && b.n_tri == 2 * SIDE);
+  /* An older program knows fewer members. */
+  part.struct_size = offsetof(struct vanguard_forecast, n_tet);
+  CHECK(!vanguard_forecast(job, 1, 0, NULL, NULL, &part));
+  CHECK(part.n_cell == f.n_cell && part.threads > 0 && !part.n_tet);
+  vanguard_free(job);
+}
+
 /* A mesh that was written is read back: the same arrays. */
 static void reads(const char *dir)
 {
@@ -711,6 +744,7 @@ int main(int argc, char **argv)
   takes_sizes();
   takes_metrics();
   checks_surfaces();
+  forecasts();
   if (argc > 1) writes(argv[1]);
   if (argc > 1) reads(argv[1]);
   CHECK(!vanguard_prepare());

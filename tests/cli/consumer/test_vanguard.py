@@ -2,6 +2,7 @@
 """Tests the module `vanguard` with the installed library. test_vanguard.py FOLDER
 VANGUARD: folder for output, program for comparison."""
 import importlib
+import json
 import os
 import subprocess
 import sys
@@ -494,6 +495,43 @@ def test_surfaces():
         assert job.boundary().n_open_edge == 3
         assert not job.report()["ok"]
     assert whole.points[whole.triangles].shape[1:] == (3, 3)
+
+
+def test_forecast(folder, program):
+    """The counts are those of `vanguard plan`, and about those of the mesh."""
+    points, triangles, patches = cube(8)
+    with vanguard.Job() as job:
+        refused("usage", "no surface", job.forecast)
+        job.surface(points, triangles, patches)
+        job.set(hmax=0.05)
+        refused("input", "0 ranks", job.forecast, 0)
+        phases = []
+        f = job.forecast(2, 2, lambda phase, *unused: phases.append(phase))
+        assert phases[-1] == "forecast" and "fill" not in phases
+        assert (f.ranks, f.threads) == (2, 2) and f.seconds > 0
+        assert f.n_tet == f.n_cell > f.n_point and f.n_wall_point == 0
+        assert f.memory == f.stages[f.peak_stage] == max(f.stages.values())
+        assert f.memory > f.memory_shared > 0 and f.bytes_written > 1e5
+        assert "cells" in repr(f) and not hasattr(f, "memory_fill")
+        assert len(job.boundary().triangles) == len(triangles)
+        assert job.report()["ok"]
+        try:
+            job.forecast(progress=lambda *unused: True)
+            assert False, "not stopped"
+        except vanguard.Stopped:
+            pass
+        made = job.mesh()
+        assert 0.8 < f.n_cell / len(made.tetrahedra) < 1.25, f
+        made.write(os.path.join(folder, "forecast"), "lb8.ugrid")
+        stem = os.path.join(folder, "forecast.lb8.ugrid")
+        planned = json.loads(subprocess.run(
+            [program, "plan", "-q", "-p", stem, "-j", "-n", "2", "-t", "2"],
+            stdout=subprocess.PIPE, check=True).stdout)
+        job.open(stem)
+        f = job.forecast(2, 2)
+        assert f.n_cell == planned["mesh"]["cells"]
+        assert f.n_point == planned["mesh"]["points"]
+        assert f.bytes_written == sum(planned["files"].values())
 
 
 def test_read(folder):

@@ -157,9 +157,46 @@ class Walk:
         def fails(*unused):
             raise Own
 
-        mesh = self.call(job.mesh, rng.choice([
+        progress = rng.choice([
             None, None, None, again, fails, lambda *unused: True,
-            lambda *unused: self.value() and False, 5, "text"]))
+            lambda *unused: self.value() and False, 5, "text"])
+        name = rng.choice(["mesh"] * 4 + ["check", "make_surface", "forecast"])
+        if name == "forecast":
+            self.forecast(progress)
+        else:
+            result = self.call(getattr(job, name), progress)
+            if isinstance(result, vanguard.Mesh):
+                self.meshes.append(result)
+            elif result is not None:
+                self.keep_surface(result)
+
+    def forecast(self, progress):
+        machine = [self.rng.choice([1, 1, 4, 0, 2**40, self.value()]),
+                   self.rng.choice([0, 0, 2, -1, self.value()])]
+        result = self.call(self.job.forecast, *machine, progress)
+        if result is not None:
+            assert result.n_cell > 0 and result.memory > 0, result
+
+    def keep_surface(self, surface):
+        assert repr(surface) and surface.n_body >= 0
+        for name in ("points", "triangles", "triangle_patches"):
+            a = getattr(surface, name)
+            self.kept.append((name, a, a.copy()))
+
+    def surface(self):
+        result = self.call(self.job.boundary)
+        if result is not None:
+            self.keep_surface(result)
+
+    def report(self):
+        form = self.rng.choice(["json", "json", "text", "html", self.text()])
+        ask = self.rng.choice([self.job] + self.meshes[-1:]).report
+        result = self.call(ask, form)
+        if result is not None:
+            assert isinstance(result, str if form == "text" else dict), form
+
+    def read(self):
+        mesh = self.call(vanguard.read, self.path())
         if mesh is not None:
             self.meshes.append(mesh)
 
@@ -216,8 +253,9 @@ class Walk:
     def step(self):
         self.rng.choices(
             [self.settings, self.input, self.sizes, self.mesh, self.ask,
-             self.close, self.replace, self.forget, self.other_thread],
-            [6, 6, 3, 5, 12, 0.4, 0.4, 1, 1])[0]()
+             self.surface, self.report, self.read, self.close, self.replace,
+             self.forget, self.other_thread],
+            [6, 6, 3, 5, 10, 1, 1, 1, 0.4, 0.4, 1, 1])[0]()
 
     def check(self):
         for name, a, before in self.kept:
