@@ -144,7 +144,8 @@ static void any_number_of_ranks(void **state)
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++)
     for (int threads = 1; threads < 3 && is_built(form[i]); threads++) {
-      const struct vg_slices_options o = { threads, 1, i % 2 ? 1000 : 0, 400 };
+      const struct vg_slices_options o = { threads, 1, i % 2 ? 1000 : 0, 400,
+                                           0 };
 
       check_form(0, form[i], &o);
       if (strcmp(form[i], "cogsg") != 0) check_form(1, form[i], &o);
@@ -229,7 +230,7 @@ static void one_failure_fails_all_ranks(void **state)
   static const char *const form[] = { "b8.ugrid", "vtu",        "pvtu",
                                       "cogsg",    "su2",        "msh",
                                       "cgns",     "fluent.msh", "surface.vtu" };
-  const struct vg_slices_options o = { 2, 0, 0, 400 };
+  const struct vg_slices_options o = { 2, 0, 0, 400, 0 };
 
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++) {

@@ -12,9 +12,12 @@
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
+#include "io/slices/slices.h"
+#include "io/slices/ugrid_slices.h"
 #include "io/stream/patch_words.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
@@ -24,6 +27,9 @@
 #define TITLE "converted by Vanguard"
 
 enum { KEY_FORM = 500, KEY_MAPBC };
+
+/* Cells of a slice, of which each thread has one in memory. */
+#define SLICE_CELLS 100000
 
 /* What a format stores. CODES: the conditions as they are; TYPES: a type that
  * follows from the condition. IDS: patch numbers, to which a .mapbc refers. */
@@ -65,7 +71,8 @@ struct arguments {
 
 struct conversion {
   const struct arguments *a;
-  struct vg_mesh mesh;
+  struct vg_ugrid_slices *slices; /* NULL: `mesh` is the whole mesh */
+  struct vg_mesh mesh; /* with `slices`: boundary and counts, borrowed */
   struct vg_read_info info;
   size_t n_cell, n_layer; /* n_layer: layer tetrahedra; 0: none, or unknown */
   char *file, *mapbc;     /* files written; mapbc: NULL without one */
@@ -259,6 +266,8 @@ static int is_free(const char *path)
 static vg_status write_mapbc(struct conversion *c, struct vg_error *err)
 {
   size_t n = strlen(c->file), n_stem = n - strlen(c->suffix) - 1, n_unset = 0;
+  const struct vg_mesh m = c->slices ? vg_ugrid_slices_boundary(c->slices)
+                                     : c->mesh;
   vg_status st;
 
   if (!(c->what & IDS) || c->what & CODES || !count_codes(&c->mesh))
@@ -276,7 +285,7 @@ static vg_status write_mapbc(struct conversion *c, struct vg_error *err)
     c->mapbc = NULL;
     return VG_OK;
   }
-  st = vg_mapbc_write(c->mapbc, &c->mesh, VG_MAPBC_VGRID, TITLE, &n_unset, err);
+  st = vg_mapbc_write(c->mapbc, &m, VG_MAPBC_VGRID, TITLE, &n_unset, err);
   if (st >= 0 && n_unset)
     vg_note(&c->notes,
             "%zu patches without a condition are inviscid walls (5) in %s",
@@ -296,17 +305,59 @@ static void check_ids(struct conversion *c)
 
 /* --- steps --------------------------------------------------------------- */
 
-static vg_status read_input(struct conversion *c, struct vg_error *err)
+/* Can the output be written from slices, in the same bytes? The writer of
+ * .cogsg needs boundary points that come first, and that of .fluent.msh keeps
+ * the faces between slices. */
+static int takes_slices(const struct conversion *c)
 {
-  const struct vg_mesh *m = &c->mesh;
+  const size_t n = strlen(c->file), len = strlen(c->suffix);
+
+  return vg_slices_can_write(c->suffix) && strcmp(c->suffix, "cogsg") &&
+         strcmp(c->suffix, VG_FLUENT_SUFFIX) && n > len &&
+         !strcmp(c->file + n - len, c->suffix);
+}
+
+/* Read a mesh of which only slices are in memory, if file and output allow it:
+ * c->slices is set then. */
+static vg_status open_slices(struct conversion *c, struct vg_error *err)
+{
+  const struct vg_slices *s;
+  vg_status st;
+
+  if (!takes_slices(c)) return VG_OK;
+  st = vg_ugrid_slices_open(c->a->in, SLICE_CELLS, &c->slices, &c->info, err);
+  if (st < 0 || !c->slices) return st;
+  s = vg_ugrid_slices(c->slices);
+  c->mesh = *s->boundary;
+  c->mesh.n_point = (size_t)s->n_point;
+  c->mesh.n_tet = (size_t)s->n_cell[VG_SLICE_TET];
+  c->mesh.n_pyr = (size_t)s->n_cell[VG_SLICE_PYR];
+  c->mesh.n_pri = (size_t)s->n_cell[VG_SLICE_PRI];
+  c->n_layer = (size_t)s->n_layer_cell[VG_SLICE_TET];
+  return VG_OK;
+}
+
+static vg_status read_whole(struct conversion *c, struct vg_error *err)
+{
   int is_known;
   vg_status st;
 
-  c->info.mapbc = c->a->mapbc;
   VG_TRY(vg_mesh_read(c->a->in, &c->mesh, &c->info, err));
-  c->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   VG_TRY(vg_format_layer_tets(c->a->in, &is_known, &c->n_layer, err));
-  if (!is_known || c->n_layer > m->n_tet) c->n_layer = 0;
+  if (!is_known || c->n_layer > c->mesh.n_tet) c->n_layer = 0;
+done:
+  return st;
+}
+
+static vg_status read_input(struct conversion *c, struct vg_error *err)
+{
+  const struct vg_mesh *m = &c->mesh;
+  vg_status st;
+
+  c->info.mapbc = c->a->mapbc;
+  VG_TRY(open_slices(c, err));
+  if (!c->slices) VG_TRY(read_whole(c, err));
+  c->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   if (c->info.has_own_mapbc)
     vg_note_own_mapbc(&c->notes, c->a->in,
                       strlen(c->a->in) - vg_format_suffix_length(c->a->in));
@@ -318,10 +369,25 @@ done:
   return st;
 }
 
+static vg_status write_slices(struct conversion *c, struct vg_error *err)
+{
+  const struct vg_slices_options o = { .plain = 1, .tail = c->n_layer > 0 };
+  const size_t n_stem = strlen(c->file) - strlen(c->suffix) - 1;
+  char *stem = strndup(c->file, n_stem);
+  vg_status st;
+
+  if (!stem) return vg_fail_memory(err, "a file name");
+  st = vg_slices_write_with(NULL, vg_ugrid_slices(c->slices), stem, c->suffix,
+                            &o, err);
+  free(stem);
+  return st;
+}
+
 static vg_status write_output(struct conversion *c, struct vg_error *err)
 {
   struct vg_ugrid_kind kind;
 
+  if (c->slices) return write_slices(c, err);
   if (!strcmp(c->suffix, VG_FOAM_SUFFIX))
     return vg_foam_write(c->file, &c->mesh, &c->foam, err);
   if (c->n_layer && vg_ugrid_kind(c->suffix, &kind) && !kind.is_text)
@@ -346,15 +412,24 @@ done:
   return st;
 }
 
+static void bounds(const struct conversion *c, double lo[3], double hi[3])
+{
+  if (c->slices) vg_ugrid_slices_bounds(c->slices, lo, hi);
+  else vg_mesh_bounds(&c->mesh, lo, hi);
+}
+
 static void print_json(const struct conversion *c)
 {
   json_t *files = json_array(), *o;
+  double lo[3], hi[3];
+
+  bounds(c, lo, hi);
 
   json_array_append_new(files, vg_text_json(c->file));
   if (c->mapbc) json_array_append_new(files, vg_text_json(c->mapbc));
   o = json_pack("{s:o s:s s:o s:o s:o s:f}", "file", vg_text_json(c->a->in),
                 "format", c->suffix, "files", files, "size",
-                vg_report_size_json(&c->mesh), "notes",
+                vg_report_counts_json(&c->mesh, lo, hi), "notes",
                 vg_report_notes_json(&c->notes), "peak_memory_bytes",
                 vg_report_peak_memory());
   json_dumpf(o, stdout, JSON_INDENT(2));
@@ -364,8 +439,11 @@ static void print_json(const struct conversion *c)
 
 static void print_text(const struct conversion *c)
 {
+  double lo[3], hi[3];
+
+  bounds(c, lo, hi);
   printf("%s: %s\n", c->a->in, c->n_cell ? "volume mesh" : "surface");
-  vg_report_size_text(stdout, &c->mesh);
+  vg_report_counts_text(stdout, &c->mesh, lo, hi);
   for (size_t i = 0; i < c->notes.n; i++)
     printf("  note: %s\n", c->notes.text[i]);
   printf("  %s\n", c->file);
@@ -436,7 +514,8 @@ int vg_cmd_convert(int argc, char **argv)
     if (a.json) print_json(&c);
     else print_text(&c);
   }
-  vg_mesh_release(&c.mesh);
+  if (!c.slices) vg_mesh_release(&c.mesh);
+  vg_ugrid_slices_close(c.slices);
   vg_notes_release(&c.notes);
   free(c.file);
   free(c.mapbc);

@@ -323,8 +323,8 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
   return read_by_name(path, out, &info, err);
 }
 
-static vg_status use_mapbc(const char *path, struct vg_mesh *m,
-                           struct vg_read_info *info, struct vg_error *err)
+vg_status vg_format_use_mapbc(const char *path, struct vg_mesh *m,
+                              struct vg_read_info *info, struct vg_error *err)
 {
   const int is_named = info->mapbc && *info->mapbc;
   char *name = is_named ? strdup(info->mapbc)
@@ -368,7 +368,7 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
   vg_status st;
 
   VG_TRY(read_by_name(path, &m, &found, err));
-  VG_TRY(use_mapbc(path, &m, &found, err));
+  VG_TRY(vg_format_use_mapbc(path, &m, &found, err));
   VG_TRY(vg_mesh_drop_inner(&m, &found.inner, err));
   if (found.turned.loose_face >= found.inner.n_copy)
     found.turned.loose_face -= found.inner.n_copy;

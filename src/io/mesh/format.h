@@ -80,6 +80,12 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err);
 
+/** The part of vg_mesh_read for conditions and names: adds them to the boundary
+ * m of the file and sets has_mapbc, has_own_mapbc, layout and match of *info.
+ * Uses its members mapbc and n_cell. */
+vg_status vg_format_use_mapbc(const char *path, struct vg_mesh *m,
+                              struct vg_read_info *info, struct vg_error *err);
+
 /** As vg_mesh_read, but without the cells and the points that only cells use:
  * the boundary of a volume mesh is a surface. */
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,

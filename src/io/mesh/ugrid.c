@@ -25,13 +25,10 @@ static const struct {
 };
 #define N_KIND (sizeof kinds / sizeof kinds[0])
 
-/* Nodes of a triangle, quadrilateral, tetrahedron, pyramid, prism and
- * hexahedron, in the order of the counts in the header, which start with the
- * points. */
-static const int element_width[6] = { 3, 4, 4, 5, 6, 8 };
-static const char *const element_name[6] = { "triangle",    "quadrilateral",
-                                             "tetrahedron", "pyramid",
-                                             "prism",       "hexahedron" };
+const int vg_ugrid_width[6] = { 3, 4, 4, 5, 6, 8 };
+const char *const vg_ugrid_element[6] = { "triangle",    "quadrilateral",
+                                          "tetrahedron", "pyramid",
+                                          "prism",       "hexahedron" };
 
 /* Start of the last part of a name that ends at `end`: the position after the
  * preceding dot or slash. */
@@ -73,15 +70,13 @@ int vg_ugrid_kind(const char *name, struct vg_ugrid_kind *kind)
 
 /* --- does the content match a kind? --- */
 
-/* Offset in the body of the nodes of an element kind; for element 6, its
- * end. */
-static uint64_t nodes_at(const struct vg_ugrid_kind *kind,
-                         const uint64_t count[7], int element)
+uint64_t vg_ugrid_nodes_at(const struct vg_ugrid_kind *kind,
+                           const uint64_t count[7], int element)
 {
   uint64_t n_int = element > 1 ? count[1] + count[2] : 0;
 
   for (int k = 0; k < element; k++)
-    n_int += count[k + 1] * (uint64_t)element_width[k];
+    n_int += count[k + 1] * (uint64_t)vg_ugrid_width[k];
   return 3 * (uint64_t)kind->real_size * count[0] +
          n_int * (uint64_t)kind->int_size;
 }
@@ -92,7 +87,7 @@ static uint64_t body_bytes(const struct vg_ugrid_kind *kind,
 {
   for (int k = 0; k < 7; k++)
     if (count[k] > UINT32_MAX - 2) return UINT64_MAX;
-  return nodes_at(kind, count, 6);
+  return vg_ugrid_nodes_at(kind, count, 6);
 }
 
 static uint64_t marker_bytes(const struct vg_ugrid_kind *kind, uint64_t body)
@@ -101,11 +96,8 @@ static uint64_t marker_bytes(const struct vg_ugrid_kind *kind, uint64_t body)
   return 8 + vg_record_size(body, VG_RECORD_LIMIT) - body;
 }
 
-/* Read the counts of a binary header at the cursor, without checking them.
- * Returns 0 if the file is shorter than a header or the record marker
- * differs. */
-static int read_counts(const struct vg_input *file,
-                       const struct vg_ugrid_kind *kind, uint64_t count[7])
+int vg_ugrid_counts(const struct vg_input *file,
+                    const struct vg_ugrid_kind *kind, uint64_t count[7])
 {
   struct vg_input in = *file;
   int32_t narrow[7];
@@ -135,7 +127,7 @@ static int fits(const struct vg_input *in, const struct vg_ugrid_kind *kind)
 {
   uint64_t count[7], body, need;
 
-  if (!read_counts(in, kind, count) || !count[0]) return 0;
+  if (!vg_ugrid_counts(in, kind, count) || !count[0]) return 0;
   body = body_bytes(kind, count);
   if (body == UINT64_MAX) return 0;
   need = 7 * (uint64_t)kind->int_size + body + marker_bytes(kind, body);
@@ -180,7 +172,7 @@ static vg_status not_fitting(const struct vg_input *in,
                    "%s: is named as a binary .%s.ugrid but holds text; "
                    "rename it to .ugrid if it is an ASCII UGRID",
                    in->path, kind_name(kind));
-  if (!read_counts(in, kind, c))
+  if (!vg_ugrid_counts(in, kind, c))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: there is no %s.ugrid header: the file has %zu "
                    "bytes%s",
@@ -198,9 +190,9 @@ static vg_status not_fitting(const struct vg_input *in,
                  (long long)c[5], (long long)c[6], in->size);
 }
 
-static vg_status check_kind(const struct vg_input *in,
-                            const struct vg_ugrid_kind *kind,
-                            struct vg_error *err)
+vg_status vg_ugrid_check_kind(const struct vg_input *in,
+                              const struct vg_ugrid_kind *kind,
+                              struct vg_error *err)
 {
   int fit = fits(in, kind), loose = -1;
 
@@ -259,11 +251,8 @@ static size_t count_of(const struct vg_mesh *m, int element)
   return list[element];
 }
 
-/* Read integers of either size into 32 bits; *odd receives one that does not
- * fit. */
-static vg_status read_ints(struct vg_input *in, int int_size, size_t n,
-                           int32_t *v, int32_t odd, const char *what,
-                           struct vg_error *err)
+vg_status vg_ugrid_ints(struct vg_input *in, int int_size, size_t n, int32_t *v,
+                        int32_t odd, const char *what, struct vg_error *err)
 {
   int64_t block[BLOCK];
 
@@ -287,13 +276,14 @@ static vg_status read_nodes(struct vg_input *in,
                             int element, struct vg_error *err)
 {
   size_t n = count_of(m, element);
-  int width = element_width[element];
+  int width = vg_ugrid_width[element];
   uint32_t *node = nodes_of(m, element);
-  vg_status st = read_ints(in, kind->int_size, n * (size_t)width,
-                           (int32_t *)node, 0, element_name[element], err);
+  vg_status st = vg_ugrid_ints(in, kind->int_size, n * (size_t)width,
+                               (int32_t *)node, 0, vg_ugrid_element[element],
+                               err);
 
   if (st < 0) return st;
-  return vg_index_from_file(in->path, element_name[element], n, width,
+  return vg_index_from_file(in->path, vg_ugrid_element[element], n, width,
                             m->n_point, node, err);
 }
 
@@ -309,8 +299,8 @@ static vg_status read_body(struct vg_input *in,
   if (st == VG_OK) st = read_nodes(in, kind, m, 0, err);
   if (st == VG_OK) st = read_nodes(in, kind, m, 1, err);
   if (st == VG_OK)
-    st = read_ints(in, kind->int_size, m->n_tri + m->n_quad, tag, INT32_MAX,
-                   "surface tags", err);
+    st = vg_ugrid_ints(in, kind->int_size, m->n_tri + m->n_quad, tag, INT32_MAX,
+                       "surface tags", err);
   for (int e = 2; e < 6 && st == VG_OK; e++)
     st = read_nodes(in, kind, m, e, err);
   return st;
@@ -323,10 +313,10 @@ static vg_status read_binary(struct vg_input *in,
 {
   struct vg_input body;
   uint64_t count[7];
-  vg_status st = check_kind(in, kind, err);
+  vg_status st = vg_ugrid_check_kind(in, kind, err);
 
   if (st < 0) return st;
-  if (!read_counts(in, kind, count)) return not_fitting(in, kind, err);
+  if (!vg_ugrid_counts(in, kind, count)) return not_fitting(in, kind, err);
   st = make_room(m, count, tag, err);
   if (st < 0) return st;
   in->at = 0;
@@ -374,20 +364,20 @@ static vg_status text_header(struct vg_input *in, uint64_t count[7],
 static vg_status text_nodes(struct vg_input *in, struct vg_mesh *m, int element,
                             struct vg_error *err)
 {
-  size_t n = count_of(m, element) * (size_t)element_width[element];
+  size_t n = count_of(m, element) * (size_t)vg_ugrid_width[element];
   uint32_t *node = nodes_of(m, element);
   int64_t v;
 
   for (size_t i = 0; i < n; i++) {
-    vg_status st = vg_input_int(in, &v, element_name[element], err);
+    vg_status st = vg_input_int(in, &v, vg_ugrid_element[element], err);
 
     if (st < 0) return st;
     if (v < 1 || (uint64_t)v > m->n_point) {
       vg_input_fail(in, err,
                     "%s %zu refers to point %lld; points are numbered 1 to "
                     "%zu",
-                    element_name[element],
-                    i / (size_t)element_width[element] + 1, (long long)v,
+                    vg_ugrid_element[element],
+                    i / (size_t)vg_ugrid_width[element] + 1, (long long)v,
                     m->n_point);
       if (err) err->code = VG_ERR_INPUT;
       return VG_ERR_INPUT;
@@ -485,7 +475,7 @@ vg_status vg_ugrid_peek(const char *path, uint64_t count[7],
       VG_TRY(vg_input_int(&in, &v, "a count of the header", err));
       count[k] = (uint64_t)v;
     }
-  } else if (!read_counts(&in, &kind, count)) {
+  } else if (!vg_ugrid_counts(&in, &kind, count)) {
     st = not_fitting(&in, &kind, err);
   }
 done:
@@ -508,7 +498,7 @@ vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
   if (kind.is_text) return VG_OK;
   VG_TRY(vg_input_open(path, &in, err));
   if (fits(&in, &kind) != 1) goto done;
-  read_counts(&in, &kind, count);
+  vg_ugrid_counts(&in, &kind, count);
   at = body_bytes(&kind, count);
   at += 7 * (uint64_t)kind.int_size + marker_bytes(&kind, at) +
         (kind.is_record ? 4 : 0); /* record marker of the tail */
@@ -586,7 +576,7 @@ static void put_body(struct vg_output *out, const struct vg_ugrid_kind *kind,
 {
   vg_ugrid_put_points(out, kind, m->n_point, (const double(*)[3])m->point);
   for (int e = 0; e < 6; e++) {
-    vg_ugrid_put_nodes(out, kind, count_of(m, e) * (size_t)element_width[e],
+    vg_ugrid_put_nodes(out, kind, count_of(m, e) * (size_t)vg_ugrid_width[e],
                        nodes_of(m, e));
     if (e != 1) continue;
     put_tags(out, m, kind->int_size, m->n_tri, m->tri_patch);
@@ -662,7 +652,7 @@ static void put_text(struct vg_output *out, const struct vg_mesh *m)
       vg_output_bytes(out, k < 2 ? " " : "\n", 1);
     }
   for (int e = 0; e < 6; e++) {
-    put_text_rows(out, count_of(m, e), element_width[e], nodes_of(m, e));
+    put_text_rows(out, count_of(m, e), vg_ugrid_width[e], nodes_of(m, e));
     if (e != 1) continue;
     for (size_t i = 0; i < m->n_tri + m->n_quad; i++) {
       uint32_t p = i < m->n_tri ? m->tri_patch[i] : m->quad_patch[i - m->n_tri];
@@ -741,8 +731,8 @@ void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
   assert(!kind->is_text && (item == 0 || (item >= 3 && item <= 5)));
   if (!item) at = 3 * (uint64_t)kind->real_size * first;
   else
-    at = nodes_at(kind, count, item - 1) +
-         first * (uint64_t)(element_width[item - 1] * kind->int_size);
+    at = vg_ugrid_nodes_at(kind, count, item - 1) +
+         first * (uint64_t)(vg_ugrid_width[item - 1] * kind->int_size);
   vg_output_order(out, kind->is_big);
   if (!kind->is_record) vg_output_seek(out, head + at);
   else

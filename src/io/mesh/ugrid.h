@@ -70,4 +70,34 @@ vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
 vg_status vg_ugrid_write_tail(const char *path, const struct vg_mesh *m,
                               size_t n_layer_tet, struct vg_error *err);
 
+/* --- layout of binary files, for readers of slices ------------------------ */
+
+/** Number of nodes and name of a triangle, quadrilateral, tetrahedron, pyramid,
+ * prism and hexahedron: the order of the counts in the header, which start with
+ * the points. */
+extern const int vg_ugrid_width[6];
+extern const char *const vg_ugrid_element[6];
+
+/** Reads the counts of a binary header at the start of a file, without checking
+ * them. Returns 0 if the file is shorter than a header or the record marker
+ * differs. */
+int vg_ugrid_counts(const struct vg_input *file,
+                    const struct vg_ugrid_kind *kind, uint64_t count[7]);
+
+/** VG_ERR_FORMAT if header and size of the file do not match this binary kind;
+ * the message names the kind that they match. Uses the first 64 kB. */
+vg_status vg_ugrid_check_kind(const struct vg_input *in,
+                              const struct vg_ugrid_kind *kind,
+                              struct vg_error *err);
+
+/** Offset in the body of the nodes of an element kind; for element 6, its
+ * end. */
+uint64_t vg_ugrid_nodes_at(const struct vg_ugrid_kind *kind,
+                           const uint64_t count[7], int element);
+
+/** Reads integers of either size into 32 bits; one that does not fit becomes
+ * `odd`. */
+vg_status vg_ugrid_ints(struct vg_input *in, int int_size, size_t n, int32_t *v,
+                        int32_t odd, const char *what, struct vg_error *err);
+
 #endif

@@ -355,9 +355,7 @@ vg_status vg_slices_write_with(struct vg_comm *comm, const struct vg_slices *s,
   if (st >= 0) switch (form_of(form)) {
     case FORM_UGRID: st = write_ugrid(comm, s, path, o, err); break;
     case FORM_COGSG: st = vg_slices_write_cogsg(comm, s, stem, o, err); break;
-    case FORM_VTU:
-      st = vg_slices_write_vtu(comm, s, path, o->threads, err);
-      break;
+    case FORM_VTU: st = vg_slices_write_vtu(comm, s, path, o, err); break;
     case FORM_PVTU: st = vg_slices_write_pvtu(comm, s, stem, o, err); break;
     case FORM_SU2:
       st = vg_slices_write_su2(comm, s, path, o->threads, err);

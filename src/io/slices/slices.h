@@ -15,6 +15,7 @@ struct vg_slices_options {
   uint64_t piece_cells;  /* .pvtu: a slice starts a new piece when the number
                             of cells before it passes a multiple of this; 0: 2
                             M */
+  int plain;             /* .vtu: 1: without fields of quality */
 };
 #define VG_SLICES_OPTIONS_INIT                                                 \
   {                                                                            \
@@ -33,15 +34,15 @@ int vg_slices_can_write(const char *form);
  *
  * For any number of ranks and threads, the files have the same bytes as those
  * of the writers of whole meshes. "vtu" has the fields angle_min and
- * radius_ratio if all cells are tetrahedra. If the mesh has solver partitions,
- * vtu and pvtu contain them as cell data solver_part, and part.N, where N is
- * their number, is a METIS file (io/stream/metis_part.h). A .pvtu has no
- * counterpart among whole meshes: it has a piece for every sequence of slices
- * with about 2 M cells, in which each slice has its own points; the cell data
- * `subdomain` and `kind` are those of the slices.
- * Memory: a slice and 1 MB per thread; the boundary points for cogsg and mapbc.
- * VG_ERR_UNSUPPORTED: another form, counts that exceed its limits, or cells
- * that it cannot hold. */
+ * radius_ratio if all cells are tetrahedra, unless `plain` is set. If the mesh
+ * has solver partitions, vtu and pvtu contain them as cell data solver_part,
+ * and part.N, where N is their number, is a METIS file
+ * (io/stream/metis_part.h). A .pvtu has no counterpart among whole meshes: it
+ * has a piece for every sequence of slices with about 2 M cells, in which each
+ * slice has its own points; the cell data `subdomain` and `kind` are those of
+ * the slices. Memory: a slice and 1 MB per thread; the boundary points for
+ * cogsg and mapbc. VG_ERR_UNSUPPORTED: another form, counts that exceed its
+ * limits, or cells that it cannot hold. */
 vg_status vg_slices_write(struct vg_comm *comm, const struct vg_slices *s,
                           const char *stem, const char *form, int threads,
                           struct vg_error *err);

@@ -94,7 +94,8 @@ vg_status vg_slices_write_cogsg(struct vg_comm *comm, const struct vg_slices *s,
                                 const struct vg_slices_options *o,
                                 struct vg_error *err);
 vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
-                              const char *path, int threads,
+                              const char *path,
+                              const struct vg_slices_options *o,
                               struct vg_error *err);
 vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
                               const char *path, int threads,

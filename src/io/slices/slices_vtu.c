@@ -86,7 +86,8 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
 }
 
 vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
-                              const char *path, int threads,
+                              const char *path,
+                              const struct vg_slices_options *o,
                               struct vg_error *err)
 {
   struct whole w = {
@@ -100,12 +101,13 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
   uint64_t size = 0;
   vg_status st;
 
-  if (!(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI])) w.n_quality = 2;
+  if (!o->plain && !(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI]))
+    w.n_quality = 2;
   w.n_field = w.n_quality;
   if (s->n_part) w.field[w.n_field++] = parts;
   st = vg_slice_file_size(&f, &size, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return st;
   vg_vtu_find(&w.mesh, size, w.field, w.n_field, &w.at);
-  return vg_slice_file_write(&f, comm, s, threads, err);
+  return vg_slice_file_write(&f, comm, s, o->threads, err);
 }

@@ -196,8 +196,10 @@ static void swap(uint32_t *c, int a, int b)
   c[b] = t;
 }
 
-static size_t turn_cells(struct vg_mesh *m)
+size_t vg_mesh_turn_cells(struct vg_mesh *m)
 {
+  assert(m);
+
   size_t n = 0;
 
   for (size_t i = 0; i < m->n_tet; i++) {
@@ -234,7 +236,9 @@ static size_t turn_cells(struct vg_mesh *m)
 struct face_table {
   struct vg_table table;
   unsigned char *found; /* [n_tri + n_quad] result of `meet` */
-  unsigned char *on;    /* [n_point] is the point on the boundary? */
+  size_t n_on;
+  unsigned char *on; /* [n_on] is the point on the boundary? Points from n_on on
+                        are not. */
   /* Processes a face of a cell, listed inward, that may be on the boundary. */
   void (*meet)(struct vg_mesh *m, struct face_table *t, const uint32_t *inward,
                int width);
@@ -284,6 +288,25 @@ static void face_release(struct face_table *t)
   free(t->on);
 }
 
+/* The number after the last point of the boundary. */
+static size_t boundary_end(const struct vg_mesh *m)
+{
+  const uint32_t *tri = (const uint32_t *)m->tri;
+  const uint32_t *quad = (const uint32_t *)m->quad;
+  size_t end = 0;
+
+  for (size_t i = 0; i < 3 * m->n_tri; i++)
+    if (tri[i] >= end) end = (size_t)tri[i] + 1;
+  for (size_t i = 0; i < 4 * m->n_quad; i++)
+    if (quad[i] >= end) end = (size_t)quad[i] + 1;
+  return end;
+}
+
+static int is_on(const struct face_table *t, uint32_t point)
+{
+  return point < t->n_on && t->on[point];
+}
+
 static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
                             struct vg_error *err)
 {
@@ -291,7 +314,8 @@ static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
   int bad = vg_table_init(&t->table, n);
 
   t->found = vg_calloc(n, 1);
-  t->on = vg_calloc(m->n_point, 1);
+  t->n_on = boundary_end(m);
+  t->on = vg_calloc(t->n_on, 1);
   if (bad || !t->found || !t->on) {
     face_release(t);
     return vg_fail_memory(err, "a table of the boundary faces");
@@ -364,7 +388,7 @@ static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
     const uint32_t *c = cell + i * (size_t)width;
     int on = 0;
 
-    for (int k = 0; k < width; k++) on += t->on[c[k]];
+    for (int k = 0; k < width; k++) on += is_on(t, c[k]);
     if (on < 3) continue;
     for (int f = 0; f < n_face; f++) {
       int w = face[f][2] == face[f][3] ? 3 : 4, all = 1;
@@ -372,7 +396,7 @@ static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
 
       for (int k = 0; k < w; k++) {
         node[k] = c[face[f][k]];
-        all &= t->on[node[k]];
+        all &= is_on(t, node[k]);
       }
       if (all) t->meet(m, t, node, w);
     }
@@ -398,7 +422,7 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
   if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex) {
     st = face_build(&t, m, err);
     if (st < 0) return st;
-    result.cell = turn_cells(m);
+    result.cell = vg_mesh_turn_cells(m);
     meet_all(m, &t);
     result.face = t.n_turned;
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
@@ -407,6 +431,68 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
   }
   if (turned) *turned = result;
   return VG_OK;
+}
+
+/* --- sides of boundary faces, from parts of the cells --- */
+
+struct vg_face_sides {
+  struct face_table table;
+  struct vg_mesh boundary; /* Borrowed faces, no cells. */
+};
+
+vg_status vg_face_sides_new(const struct vg_mesh *m, struct vg_face_sides **out,
+                            struct vg_error *err)
+{
+  struct vg_face_sides *t = vg_calloc(1, sizeof *t);
+  vg_status st;
+
+  assert(m && out);
+  if (!t) return vg_fail_memory(err, "a table of the boundary faces");
+  t->table.meet = note_side;
+  t->boundary = (struct vg_mesh){
+    .n_tri = m->n_tri, .tri = m->tri, .n_quad = m->n_quad, .quad = m->quad
+  };
+  st = face_build(&t->table, &t->boundary, err);
+  if (st < 0) free(t);
+  else *out = t;
+  return st;
+}
+
+void vg_face_sides_meet(struct vg_face_sides *t, const struct vg_mesh *part)
+{
+  struct vg_mesh m = *part;
+
+  m.n_tri = t->boundary.n_tri;
+  m.tri = t->boundary.tri;
+  m.n_quad = t->boundary.n_quad;
+  m.quad = t->boundary.quad;
+  meet_all(&m, &t->table);
+}
+
+int vg_face_sides_turn(const struct vg_face_sides *t, struct vg_mesh *m,
+                       size_t *n)
+{
+  const size_t n_face = m->n_tri + m->n_quad;
+
+  *n = 0;
+  for (size_t f = 0; f < n_face; f++)
+    if (t->table.found[f] == SIDE_BOTH) return 0;
+  for (size_t f = 0; f < n_face; f++) {
+    int width;
+    uint32_t *node = (uint32_t *)face_nodes(m, f, &width);
+
+    if (t->table.found[f] != SIDE_BACK) continue;
+    swap(node, 1, width - 1);
+    ++*n;
+  }
+  return 1;
+}
+
+void vg_face_sides_free(struct vg_face_sides *t)
+{
+  if (!t) return;
+  face_release(&t->table);
+  free(t);
 }
 
 /* --- faces between cells --- */

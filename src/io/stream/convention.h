@@ -25,6 +25,32 @@ struct vg_turned {
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err);
 
+/** The part of vg_mesh_turn for cells: mirrors those of negative volume and
+ * returns their number. */
+size_t vg_mesh_turn_cells(struct vg_mesh *m);
+
+/** Sides of the boundary faces on which there are cells, for a mesh whose cells
+ * come in parts. Not thread-safe. */
+struct vg_face_sides;
+
+/** Enters the boundary faces of m, which must stay valid and unchanged.
+ * O(boundary) memory. *out is to be freed with vg_face_sides_free.
+ * VG_ERR_MEMORY.
+ */
+vg_status vg_face_sides_new(const struct vg_mesh *m, struct vg_face_sides **out,
+                            struct vg_error *err);
+
+/** Finds the boundary faces of the cells of `part`, whose volumes are positive
+ * and whose nodes have the numbers of m. */
+void vg_face_sides_meet(struct vg_face_sides *t, const struct vg_mesh *part);
+
+/** Once all cells have been met: turns the faces of m as vg_mesh_turn does,
+ * *n of them. Returns 0 if a face lies between two cells; m is then
+ * unchanged. */
+int vg_face_sides_turn(const struct vg_face_sides *t, struct vg_mesh *m,
+                       size_t *n);
+void vg_face_sides_free(struct vg_face_sides *t);
+
 /* Faces listed as boundary that lie between two cells. */
 struct vg_inner_faces {
   size_t n_face;     /* faces removed */

@@ -32,6 +32,13 @@ json_t *vg_report_notes_json(const struct vg_notes *notes);
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);
 
+/** The same for a mesh of which only the counts are known, and its bounding
+ * box. */
+void vg_report_counts_text(FILE *to, const struct vg_mesh *m,
+                           const double lo[3], const double hi[3]);
+json_t *vg_report_counts_json(const struct vg_mesh *m, const double lo[3],
+                              const double hi[3]);
+
 /** Number, faces, conditions, area, name and bounding box of every patch; the
  * text lists at most VG_SHOWN_PATCHES. */
 #define VG_SHOWN_PATCHES 40

@@ -28,6 +28,12 @@ void vg_report_size_text(FILE *to, const struct vg_mesh *m)
   double lo[3], hi[3];
 
   vg_mesh_bounds(m, lo, hi);
+  vg_report_counts_text(to, m, lo, hi);
+}
+
+void vg_report_counts_text(FILE *to, const struct vg_mesh *m,
+                           const double lo[3], const double hi[3])
+{
   count_line(to, "points", m->n_point);
   count_line(to, "boundary triangles", m->n_tri);
   count_line(to, "boundary quadrilaterals", m->n_quad);
@@ -61,6 +67,12 @@ json_t *vg_report_size_json(const struct vg_mesh *m)
   double lo[3], hi[3];
 
   vg_mesh_bounds(m, lo, hi);
+  return vg_report_counts_json(m, lo, hi);
+}
+
+json_t *vg_report_counts_json(const struct vg_mesh *m, const double lo[3],
+                              const double hi[3])
+{
   return json_pack("{s:I s:I s:I s:I s:I s:I s:I s:I s:I s:[fff] s:[fff]}",
                    "points", (json_int_t)m->n_point, "triangles",
                    (json_int_t)m->n_tri, "quadrilaterals",

@@ -78,6 +78,20 @@ for from in $forms; do
   rm -f a.*
 done
 
+# A compressed file is read as a whole, a plain one in slices: the same bytes.
+vanguard convert mixed.ugrid a.lb8.ugrid
+gzip -k a.lb8.ugrid
+mkdir whole sliced
+for to in b8.ugrid lb4.ugrid r8.ugrid b8.ugrid64 vtu su2 msh $cgns cogsg; do
+  vanguard convert a.lb8.ugrid.gz "whole/m.$to"
+  sed 's,whole/,,' out >want.out
+  vanguard convert a.lb8.ugrid "sliced/m.$to"
+  sed 's,sliced/,,' out | sed 's/^a.lb8.ugrid:/a.lb8.ugrid.gz:/' |
+    diff want.out - || fail "the report on $to"
+  diff -r whole sliced || fail "$to in slices differs"
+done
+rm -r a.* whole sliced
+
 # Names and conditions: in a .mapbc where the format has patch numbers.
 vanguard convert mixed.ugrid to/a.lb8.ugrid
 exits 1
