@@ -20,12 +20,11 @@ static vg_status checked(vanguard_job *job)
 
   if (job->is_refused) return VG_ERR_USAGE;
   if (b->read && b->check.face_kinds) return VG_OK;
-  return vg_fail(
-    &job->err, VG_ERR_USAGE,
-    "there is no surface: vanguard_check, vanguard_forecast, "
-    "vanguard_make_surface or vanguard_mesh has not been called, has failed before the "
-    "surface was checked, or this is not the first rank of its "
-    "node");
+  return vg_fail(&job->err, VG_ERR_USAGE,
+                 "there is no surface: vanguard_check, vanguard_forecast, "
+                 "vanguard_make_surface or vanguard_mesh has not been called, "
+                 "has failed before the surface was checked, or this is not "
+                 "the first rank of its node");
 }
 
 vanguard_status vanguard_boundary(vanguard_job *job,

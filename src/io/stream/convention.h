@@ -34,9 +34,8 @@ size_t vg_mesh_turn_cells(struct vg_mesh *m);
 struct vg_face_sides;
 
 /** Enters the boundary faces of m, which must stay valid and unchanged.
- * O(boundary) memory. *out is to be freed with vg_face_sides_free.
- * VG_ERR_MEMORY.
- */
+ * O(boundary) memory. The caller frees *out with vg_face_sides_free.
+ * VG_ERR_MEMORY. */
 vg_status vg_face_sides_new(const struct vg_mesh *m, struct vg_face_sides **out,
                             struct vg_error *err);
 
