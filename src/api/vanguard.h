@@ -296,8 +296,9 @@ VANGUARD_API vanguard_status vanguard_mesh(vanguard_job *job,
 /** Stop a running vanguard_mesh, vanguard_check, vanguard_make_surface,
  * vanguard_forecast or vanguard_write, which then returns VANGUARD_ERR_STOPPED
  * within about a second, on all ranks. Only formats that need the whole mesh in
- * one piece (vanguard_write) may take longer to write. Has no effect if none is
- * running. May be called by any thread and from a signal handler. */
+ * one piece (vanguard_write) may take longer to write, and so may forecasts of
+ * more than some ten million cells. Has no effect if none is running. May be
+ * called by any thread and from a signal handler. */
 VANGUARD_API void vanguard_cancel(vanguard_job *job);
 
 /** Read, repair, remesh and complete the surface as vanguard_mesh does, decide

@@ -160,7 +160,8 @@ class Walk:
         progress = rng.choice([
             None, None, None, again, fails, lambda *unused: True,
             lambda *unused: self.value() and False, 5, "text"])
-        name = rng.choice(["mesh"] * 4 + ["check", "make_surface", "forecast"])
+        name = rng.choice(["mesh"] * 4 + ["check", "make_surface", "forecast",
+                                       "forecast"])
         if name == "forecast":
             self.forecast(progress)
         else:
@@ -171,13 +172,18 @@ class Walk:
                 self.keep_surface(result)
 
     def forecast(self, progress):
-        machine = [self.rng.choice([1, 1, 4, 0, 2**40, self.value()]),
-                   self.rng.choice([0, 0, 2, -1, self.value()])]
+        machine = [self.rng.choice([1, 1, 1, 4, 4, self.value()]),
+                   self.rng.choice([0, 0, 0, 2, 2, self.value()])]
         result = self.call(self.job.forecast, *machine, progress)
         if result is not None:
+            self.made("forecast")
             assert result.n_cell > 0 and result.memory > 0, result
 
+    def made(self, what):
+        self.done[what] = self.done.get(what, 0) + 1
+
     def keep_surface(self, surface):
+        self.made("surface")
         assert repr(surface) and surface.n_body >= 0
         for name in ("points", "triangles", "triangle_patches"):
             a = getattr(surface, name)
@@ -198,6 +204,7 @@ class Walk:
     def read(self):
         mesh = self.call(vanguard.read, self.path())
         if mesh is not None:
+            self.made("mesh of a file")
             self.meshes.append(mesh)
 
     def ask(self):
@@ -294,6 +301,8 @@ def main(folder, seed=1, jobs=60):
     for kind in ("returned", "input", "usage", "busy", "ValueError",
                  "TypeError", "callback", "stopped"):
         assert done.get(kind), "no call ended with " + kind
+    for what in ("forecast", "surface", "mesh of a file"):
+        assert done.get(what), "no call made a " + what
     job = vanguard.Job()
     job.surface(POINTS, TRIANGLES, PATCHES)
     assert abs(job.mesh().quality["volume"] - 1) < 1e-9
