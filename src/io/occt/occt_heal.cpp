@@ -110,6 +110,46 @@ bool is_between(const Face &a, const Face &b)
          normal_at(a.shape, p) * normal_at(b.shape, p) < 0;
 }
 
+/* How often the faces of each solid use an edge. */
+class Uses
+{
+public:
+  explicit Uses(const Model &model)
+  {
+    for (const Face &f : model.faces)
+      if (!f.shape.IsNull() && f.solid >= 0) count(f, 1);
+  }
+
+  void remove(const Face &f)
+  {
+    if (f.solid >= 0) count(f, -1);
+  }
+
+  /* Would the shell of a face be open without it? An edge between an even
+   * number of faces would then be one of an odd number. */
+  bool close(const Face &f) const
+  {
+    std::map<int, int> own;
+
+    if (f.solid < 0) return false;
+    for (TopExp_Explorer e(f.shape, TopAbs_EDGE); e.More(); e.Next())
+      own[edges_.FindIndex(e.Current())]++;
+    return std::any_of(own.begin(), own.end(), [&](std::pair<int, int> n) {
+      return n.second % 2 && uses_.at({ f.solid, n.first }) % 2 == 0;
+    });
+  }
+
+private:
+  void count(const Face &f, int n)
+  {
+    for (TopExp_Explorer e(f.shape, TopAbs_EDGE); e.More(); e.Next())
+      uses_[{ f.solid, edges_.Add(e.Current()) }] += n;
+  }
+
+  TopTools_IndexedMapOfShape edges_; /* regardless of their orientation */
+  std::map<std::pair<int, int>, int> uses_; /* of a solid and an edge */
+};
+
 /* Drop the later of two equal faces in the file. Equal faces of solids that
  * overlap are kept for their union in the first round. */
 void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
@@ -237,6 +277,7 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
                  const Talk &talk)
 {
   Walls walls(model, list);
+  Uses uses(model);
   std::vector<bool> is_wall(model.faces.size(), false);
 
   for (size_t i = 0; i < model.faces.size(); i++) {
@@ -262,7 +303,15 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
       if (is_between(model.faces[a.at], model.faces[b.at])) {
         walls.add_pair(std::min(a.at, b.at), std::max(a.at, b.at));
         is_wall[a.at] = is_wall[b.at] = true;
-      } else drop_copy(model, a.at, b.at, again, talk);
+        continue;
+      }
+      Face &later = model.faces[std::max(a.at, b.at)];
+      const Face &first = model.faces[std::min(a.at, b.at)];
+      const Face copy = later;
+
+      if (first.solid == later.solid && uses.close(later)) continue;
+      drop_copy(model, a.at, b.at, again, talk);
+      if (later.shape.IsNull()) uses.remove(copy);
     }
   walls.drop(again, talk);
 }

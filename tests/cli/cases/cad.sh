@@ -15,6 +15,16 @@ vanguard check --json "$cad/doubled.brep" --remesh-surface no
 exits 0
 says out "CAD: face 7 at (0.5, 0, 1.5) duplicates face 3 and was dropped"
 
+# A face of a solid is kept although another one is near: without it, the solid
+# would be open.
+sed 's/3\.)/5.E-5)/; s/(3\.,/(5.E-5,/' "$cad/box.step" >plate.step
+vanguard check plate.step --remesh-surface no
+exits 0
+lacks out "duplicates"
+says out "patches                                6"
+says out "closed"
+says out "volume 0.0001,"
+
 # a number of faces for which Open CASCADE's own way of orienting them takes
 # forever
 awk -v n=27 -f "$cad/facets.awk" </dev/null >facets.step
