@@ -78,9 +78,10 @@ static double overlap(const struct vg_load_octant *c, const struct vg_plane *p,
                       double width)
 {
   double x = side_of_plane(p, c->at), half = half_across(c, p);
-  double lo = fmax(x - half, -width), hi = fmin(x + half, width);
 
-  return hi > lo ? (hi - lo) / (2 * half) : 0;
+  /* Most octants are far from the plane. */
+  if (x - half >= width || x + half <= -width) return 0;
+  return (fmin(x + half, width) - fmax(x - half, -width)) / (2 * half);
 }
 
 /* Spacings from its planes that a zone's cells reach. */

@@ -80,7 +80,10 @@ static void choose(struct vg_plan *p)
   }
 }
 
-/* Forecasts with other leaf sizes on the chosen machine, or on the largest. */
+/* Forecasts with other leaf sizes on the chosen machine, or on the largest.
+ * Sizes that give more than LEAVES_MOST leaves are omitted: their forecasts
+ * take minutes. */
+#define LEAVES_MOST 10000
 static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
 {
   static const double sizes[VG_PLAN_LEAVES] = { 4e4, 7e4, 1e5,   1.5e5,
@@ -92,6 +95,7 @@ static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
   for (int i = 0; st >= 0 && i < VG_PLAN_LEAVES; i++) {
     struct vg_forecast o = VG_FORECAST_INIT;
 
+    if (p->load.cells > LEAVES_MOST * sizes[i]) continue;
     st = vg_plan_tasks(p, sizes[i], &o, err);
     if (st >= 0)
       st = run_on(p, &o, at->ranks, at->threads, at->ranks_per_node,

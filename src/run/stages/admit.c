@@ -52,9 +52,11 @@ static int fits(const struct vg_run_admission *a, const struct need *need,
   return limit > 0 ? need->all <= limit : need->more <= TOLERANCE * free_bytes;
 }
 
+/* least: "at least " if the need is a lower bound, otherwise "". */
 static vg_status refuse(const struct vg_run_admission *a,
                         const struct need *need, double cells,
-                        double free_bytes, struct vg_error *err)
+                        const char *least, double free_bytes,
+                        struct vg_error *err)
 {
   const double limit = a->settings->max_memory;
   char have[80];
@@ -66,10 +68,10 @@ static vg_status refuse(const struct vg_run_admission *a,
              free_bytes / 1e9, (need->all - need->more) / 1e9);
   return vg_fail(err, VG_ERR_MEMORY,
                  "the mesh would have about %.3g cells outside the layers and "
-                 "need %.3g GB on each node in %s, but %s; use larger sizes or "
-                 "more nodes (`vanguard plan` forecasts both), or set "
+                 "need %s%.3g GB on each node in %s, but %s; use larger sizes "
+                 "or more nodes (`vanguard plan` forecasts both), or set "
                  "--max-memory to the memory that may be used",
-                 cells, need->all / 1e9, stage_name[need->stage], have);
+                 cells, least, need->all / 1e9, stage_name[need->stage], have);
 }
 
 /* Cells of the largest subdomain and of the separators. The forecast of the
@@ -106,6 +108,25 @@ static vg_status count_tasks(const struct vg_run_admission *a,
   return VG_OK;
 }
 
+/* Without the cells of separators and of the largest subdomain, which only the
+ * forecast of the tasks gives. */
+static vg_status refuse_at_once(const struct vg_run_admission *a,
+                                struct vg_memory_counts c, double free_bytes,
+                                struct vg_error *err)
+{
+  double is_large = 0;
+  struct need need;
+  vg_status st;
+
+  c.n_leaf = 0;
+  c.largest_leaf = c.separator_cells = 0;
+  need = need_of(a, &c);
+  if (!isinf(free_bytes)) is_large = !fits(a, &need, free_bytes);
+  st = is_large > 0 ? refuse(a, &need, c.cells, "at least ", free_bytes, err)
+                    : VG_OK;
+  return vg_comm_agree(a->run->comm, st, err);
+}
+
 vg_status vg_run_admit(const void *admission, const struct vg_front *front,
                        const struct vg_load *load,
                        const struct vg_cut_rule *rule, struct vg_error *err)
@@ -129,10 +150,11 @@ vg_status vg_run_admit(const void *admission, const struct vg_front *front,
   if (leads) is_near = !fits(a, &need, free_bytes);
   VG_TRY(vg_comm_max(a->run->comm, 1, &is_near, err));
   if (!(is_near > 0)) goto done;
+  VG_TRY(refuse_at_once(a, c, free_bytes, err));
   VG_TRY(count_tasks(a, front, load, rule, &c, err));
   need = need_of(a, &c);
   if (leads && !fits(a, &need, free_bytes))
-    st = refuse(a, &need, c.cells, free_bytes, err);
+    st = refuse(a, &need, c.cells, "", free_bytes, err);
 done:
   return st;
 }

@@ -20,5 +20,31 @@ vanguard mesh -q -p box --hmax 0.0018 --surface-sizes no --max-memory 20 \
   --write b8.ugrid --out large
 exits 1
 says err "the mesh would have about 1."
-says err "e+09 cells outside the layers and need 3"
+says err "e+09 cells outside the layers and need at least 2"
 absent large/box.b8.ugrid
+
+# A source over the whole domain that requests billions of cells is refused
+# before the tasks are forecast, and the plan omits leaf sizes of which the
+# forecast would take minutes.
+vanguard demo sphere --cells 20000 --out .
+cat >source.deck <<'END'
+hmax
+2.6
+
+farfield
+kind
+none
+
+sources
+kind    h0    h1    r0
+sphere  0.04  0.04  20
+END
+vanguard mesh -q -p sphere --deck source.deck --surface-sizes no --max-memory 20 \
+  --write b8.ugrid --out large
+exits 1
+says err "e+09 cells outside the layers and need at least 9"
+absent large/sphere.b8.ugrid
+vanguard plan -q -p sphere --deck source.deck --surface-sizes no --ranks 64 --json
+exits 0
+says out '"best_leaf_cells": 700000'
+lacks out '"leaf_cells": 300000'
