@@ -64,6 +64,17 @@ static void note_cap(struct vg_boundary *b)
             "xyz"[f->cap_axis], f -> cap_at, "xyz"[f->cap_axis]);
 }
 
+/* An open half model has an axis, as has one whose cap was removed. */
+static void note_half(struct vg_boundary *b)
+{
+  const int half = (int)b->read->settings.half;
+
+  if (half == VG_HALF_AUTO || half == VG_HALF_NO || b->flow.axis >= 0) return;
+  if (b->check.is_closed)
+    vg_note(b->notes, "setting that has no effect because the surface is "
+                      "closed: half");
+}
+
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
@@ -76,6 +87,7 @@ vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
            ? vg_fail(err, st, "%s: %s", b->read->files.stem, why.text)
            : vg_fail(err, st, "%s", why.text);
   note_cap(b);
+  note_half(b);
   note_cavities(b);
   return VG_OK;
 }

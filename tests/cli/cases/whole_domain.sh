@@ -67,6 +67,9 @@ says out "Evidence: given by the setting flow internal"
 vanguard check -q room.obj
 exits 0
 says out "Flow within the given outer boundary"
+vanguard check -q room.obj --half yes
+exits 0
+says out "setting that has no effect because the surface is closed: half"
 
 # The user can override this.
 vanguard mesh -q -p room --farfield sphere --farfield-lengths 3 \
