@@ -146,6 +146,27 @@ done:
   return st;
 }
 
+/* Nothing is left of a wrap if it goes through the holes of the surface, or if
+ * the body is small compared with the size. */
+static vg_status refuse_empty(const struct vg_mesh *in, double size,
+                              const struct vg_wrap_forecast *f,
+                              struct vg_error *err)
+{
+  double lo[3], hi[3], extent = 0;
+
+  vg_mesh_bounds(in, lo, hi);
+  for (int k = 0; k < 3; k++) extent = fmax(extent, hi[k] - lo[k]);
+  if (!f->n_open || size > extent)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "nothing is left of a wrap of size %g, since the body is "
+                   "only %.3g long; take a smaller size",
+                   size, extent);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "nothing is left of a wrap of size %g: it goes through the "
+                 "holes of the surface; take a larger size",
+                 size);
+}
+
 /* Make the wrap of `in`, without patches. */
 static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
                       struct vg_mesh *out, struct vg_wrap_report *r,
@@ -172,10 +193,7 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
   out->n_patch = 0;
   if (st < 0) goto done;
   if (!out->n_tri) {
-    st = vg_fail(err, VG_ERR_GEOMETRY,
-                 "nothing is left of a wrap of size %g: it goes through the "
-                 "holes of the surface; take a larger size",
-                 o->size);
+    st = refuse_empty(in, o->size, &f, err);
     goto done;
   }
   VG_CHECK("the wrapping of a surface", vg_mesh_open_edges(out));

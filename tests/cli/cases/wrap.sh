@@ -53,3 +53,9 @@ vanguard mesh -q -p nested.obj --flow external --wrap 0.2 --walls 1-2 \
   --out lost
 exits 1
 says err "nothing is left of patch 2"
+
+# A size that is large compared with the body.
+octahedron >octa.obj
+vanguard check -q octa.obj --wrap 50
+exits 1
+says err "since the body is only 2 long; take a smaller size"
