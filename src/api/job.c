@@ -309,6 +309,9 @@ static vg_status check_triangles(const char *name, size_t n_point, size_t n,
                    "%s: %zu points are too many for "
                    "a surface",
                    name, n_point);
+  if (!n)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the surface has no triangles; give at least one", name);
   for (size_t i = 0; i < 3 * n; i++)
     if (tri[i] >= n_point)
       return vg_fail(err, VG_ERR_INPUT,

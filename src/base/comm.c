@@ -172,6 +172,21 @@ static void spare_delays(void)
   }
 }
 
+/* For communicators of the caller. Most calls of MPI abort the process before
+ * its start and after its end. */
+static vg_status is_running(struct vg_error *err)
+{
+  int is_up = 0, is_over = 0;
+
+  MPI_Initialized(&is_up);
+  MPI_Finalized(&is_over);
+  if (is_up && !is_over) return VG_OK;
+  return vg_fail(err, VG_ERR_USAGE,
+                 "a communicator is given, but MPI %s; call MPI_Init_thread "
+                 "first, or use no communicator",
+                 is_up ? "was finalised" : "is not initialised");
+}
+
 static vg_status allows_threads(int level, struct vg_error *err)
 {
   if (level >= MPI_THREAD_MULTIPLE) return VG_OK;
@@ -331,6 +346,7 @@ vg_status vg_comm_of(const void *mpi, struct vg_comm **out,
   vg_status st;
 
   if (!c) return vg_fail_memory(err, "communication");
+  VG_TRY(is_running(err));
   MPI_Query_thread(&level);
   VG_TRY(allows_threads(level, err));
   VG_TRY(join(c, *(const MPI_Comm *)mpi, err));
@@ -345,8 +361,11 @@ done:
 vg_status vg_comm_of_fortran(int handle, struct vg_comm **out,
                              struct vg_error *err)
 {
-  MPI_Comm comm = MPI_Comm_f2c((MPI_Fint)handle);
+  MPI_Comm comm;
+  vg_status st = is_running(err);
 
+  if (st < 0) return st;
+  comm = MPI_Comm_f2c((MPI_Fint)handle);
   return vg_comm_of(&comm, out, err);
 }
 

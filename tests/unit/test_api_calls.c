@@ -648,9 +648,39 @@ static void every_sequence_gives_statuses(void **state)
   assert_true(n_meshed > n_mesh / 10);
 }
 
+/* MPI itself would abort the process. */
+static void communicators_need_mpi(void **state)
+{
+  vanguard_job *made = NULL;
+  int word = 0;
+
+  (void)state;
+  assert_int_equal(vanguard_new_fortran(VANGUARD_ABI, 0, &made),
+                   VANGUARD_ERR_USAGE);
+  assert_non_null(strstr(vanguard_message(made), "MPI is not initialised"));
+  vanguard_free(made);
+  assert_int_equal(vanguard_new_mpi(VANGUARD_ABI, &word, &made),
+                   VANGUARD_ERR_USAGE);
+  vanguard_free(made);
+}
+
+static void surfaces_have_triangles(void **state)
+{
+  vanguard_job *made;
+
+  (void)state;
+  assert_int_equal(vanguard_new(VANGUARD_ABI, &made), VANGUARD_OK);
+  assert_int_equal(vanguard_surface(made, "none", 0, NULL, 0, NULL, NULL),
+                   VANGUARD_ERR_INPUT);
+  assert_non_null(strstr(vanguard_message(made), "has no triangles"));
+  vanguard_free(made);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(communicators_need_mpi),
+    cmocka_unit_test(surfaces_have_triangles),
     cmocka_unit_test(every_sequence_gives_statuses),
   };
 

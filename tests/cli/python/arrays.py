@@ -33,6 +33,13 @@ def reuse_memory():
         job_of(n, hmax=0.2).mesh()
 
 
+def test_empty_arrays():
+    job = job_of(4)
+    for empty in ([], np.zeros((0, 3))):
+        job.size_points([[0, 0, 0]], [0.01])
+        job.size_points(empty, [])
+
+
 def test_after_the_job():
     mesh = layered()
     found = numbers(mesh)
