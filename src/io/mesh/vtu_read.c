@@ -392,6 +392,12 @@ static vg_status read_text(const struct file *f, const struct array *a,
       return refuse_number(f, a, i, n, "a number", err);
     at = to;
   }
+  while (at < a->end && isspace((unsigned char)*at)) at++;
+  if (at < a->end && *at != '<')
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: array '%s' has more than %zu numbers; check its "
+                   "NumberOfComponents",
+                   f->in->path, a->name, n);
   return VG_OK;
 }
 
@@ -635,6 +641,22 @@ done:
   return st;
 }
 
+/* Without the end tag, messages about the array that is missing or short would
+ * mislead. */
+static vg_status explain(const struct vg_input *in, vg_status st,
+                         struct vg_error *err)
+{
+  static const char end[] = "</VTKFile>";
+  const size_t n = sizeof end - 1;
+  const char *data = (const char *)in->data;
+
+  if (st != VG_ERR_FORMAT || !memmem(data, in->size, "<VTKFile", 8)) return st;
+  for (size_t i = in->size; i-- > 0 && in->size - i < 200;)
+    if (in->size - i >= n && !memcmp(data + i, end, n)) return st;
+  return vg_fail(err, st, "%s: truncated: the file does not end with %s",
+                 in->path, end);
+}
+
 int vg_vtu_has_array(struct vg_input *in, const char *name)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -667,6 +689,7 @@ vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,
   m = (struct vg_mesh)VG_MESH_INIT;
   own = NULL;
 done:
+  st = explain(in, st, err);
   free(g.type);
   free(g.end);
   free(g.node);

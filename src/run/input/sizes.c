@@ -181,6 +181,7 @@ done:
 static vg_status read_values(const char *path, struct values *v,
                              struct vg_error *err)
 {
+  struct vg_error why = VG_ERROR_INIT;
   char *mesh = NULL;
   size_t n = 0;
   vg_status st;
@@ -195,7 +196,11 @@ static vg_status read_values(const char *path, struct values *v,
                    path);
   VG_TRY(vg_sol_read(path, &n, &v->components, &v->value, err));
   VG_TRY(find_mesh(path, &mesh, err));
-  VG_TRY(vg_format_read(mesh, &v->m, err));
+  st = vg_format_read(mesh, &v->m, &why);
+  if (st < 0)
+    vg_fail(err, st, "%s: the mesh of these sizes cannot be read: %s", path,
+            why.text);
+  if (st < 0) goto done;
   if (n != v->m.n_point)
     st = vg_fail(err, VG_ERR_INPUT, "%s has %zu %s, but %s has %zu points",
                  path, n, v->components == 1 ? "sizes" : "metrics", mesh,

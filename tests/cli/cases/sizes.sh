@@ -148,3 +148,34 @@ vanguard mesh -q -p box --sizes nowhere.sol --out no
 exits 1
 says err "nowhere.sol"
 [ ! -e no/box.cogsg ] || fail "a refused run wrote a mesh"
+
+# Files that are damaged, or contain other values than announced.
+vtu() { # NUMBERS: a .vtu with them as the sizes of its 4 points
+  cat <<END
+<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="0">
+<PointData><DataArray type="Float64" Name="size" format="ascii">
+$1</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+-9 -9 -9 9 0 0 0 9 0 0 0 9</DataArray></Points></Piece></UnstructuredGrid>
+</VTKFile>
+END
+}
+vtu "1 1 1 1 2 2 2 2" >two.vtu
+vanguard plan -q -n 1 box --sizes two.vtu
+exits 1
+says err "two.vtu: array 'size' has more than 4 numbers"
+for bytes in 200 300; do
+  vtu "1 1 1 1" | head -c $bytes >cut.vtu
+  vanguard plan -q -n 1 box --sizes cut.vtu
+  exits 1
+  says err "cut.vtu: truncated: the file does not end with </VTKFile>"
+done
+printf '%s\n' "MeshVersionFormatted 2" "Dimension 3" Vertices 1 "0 0 0 1" End \
+  >point.mesh
+printf '%s\n' "MeshVersionFormatted 2" "Dimension 3" SolAtVertices 1 "1 1" 1 End \
+  >point.sol
+vanguard plan -q -n 1 box --sizes point.sol
+exits 1
+says err "point.sol: the mesh of these sizes cannot be read: point.mesh: no tri"
