@@ -128,6 +128,16 @@ static int held_by(const char *suffix)
   return vg_ugrid_kind(suffix, &kind) ? held_by_ugrid : 0;
 }
 
+/* Not the name of a file that can appear when it is complete: a device, a
+ * pipe. */
+static int is_special(const char *path)
+{
+  struct stat s;
+
+  if (!strncmp(path, "/dev/", 5)) return 1;
+  return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
 /* Set file, suffix and what. */
 static vg_status choose(struct conversion *c, struct vg_error *err)
 {
@@ -144,6 +154,10 @@ static vg_status choose(struct conversion *c, struct vg_error *err)
     c->file = NULL;
     return vg_fail_memory(err, "a file name");
   }
+  if (is_special(c->a->out))
+    return vg_fail(err, VG_ERR_USAGE,
+                   "%s: not a regular file; give the name of a file",
+                   c->a->out);
   if (is_input(c->a->in, c->file))
     return vg_fail(err, VG_ERR_USAGE,
                    "%s: this is the input; give another name", c->file);
@@ -305,6 +319,18 @@ static void check_ids(struct conversion *c)
 
 /* --- steps --------------------------------------------------------------- */
 
+/* The name has the suffix of no format. */
+static vg_status refuse_stem(const char *name, struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+
+  vg_format_unknown(name, &why);
+  return vg_fail(err, VG_ERR_USAGE,
+                 "%s; give the complete name of a file, not the stem of a "
+                 "project",
+                 why.text);
+}
+
 /* Can the output be written from slices, in the same bytes? The writer of
  * .cogsg needs boundary points that come first, and that of .fluent.msh keeps
  * the faces between slices. */
@@ -354,6 +380,7 @@ static vg_status read_input(struct conversion *c, struct vg_error *err)
   const struct vg_mesh *m = &c->mesh;
   vg_status st;
 
+  if (!vg_format_suffix_length(c->a->in)) return refuse_stem(c->a->in, err);
   c->info.mapbc = c->a->mapbc;
   VG_TRY(open_slices(c, err));
   if (!c->slices) VG_TRY(read_whole(c, err));
@@ -406,7 +433,9 @@ static vg_status convert(struct conversion *c, struct vg_display *show,
   vg_display_update(show, "write", c->n_cell, 0);
   VG_TRY(write_output(c, err));
   check_ids(c);
-  VG_TRY(write_mapbc(c, err));
+  st = write_mapbc(c, err);
+  if (st < 0) unlink(c->file);
+  if (st < 0) goto done;
   note_mesh(c);
 done:
   return st;
@@ -497,7 +526,8 @@ int vg_cmd_convert(int argc, char **argv)
            "Points, cells and their order are kept. Names and conditions of "
            "patches that the format cannot hold are written to a .mapbc with "
            "the stem of OUT, if the format has patch numbers; notes list "
-           "everything that is lost."
+           "everything that is lost. IN and OUT are names of files, not stems "
+           "of projects."
   };
   struct arguments a = { NULL };
   struct conversion c = { .a = &a };

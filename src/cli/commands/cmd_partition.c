@@ -234,6 +234,12 @@ static vg_status write_foam(const struct run *r, const char *path,
          : vg_foam_write_parts(path, r->n_cell, r->part, r->report.n_part, err);
 }
 
+/* Removes the files written before one that failed. */
+static void remove_files(const struct run *r)
+{
+  for (size_t i = 0; i + 1 < r->n_file; i++) unlink(r->file[i]);
+}
+
 static vg_status write_files(struct run *r, struct vg_error *err)
 {
   const struct arguments *a = r->a;
@@ -251,6 +257,7 @@ static vg_status write_files(struct run *r, struct vg_error *err)
   if (st >= 0 && path && a->to_foam && (path = add_file(r, VG_FOAM_SUFFIX)))
     st = write_foam(r, path, err);
   if (!path) st = vg_fail_memory(err, "a file name");
+  if (st < 0) remove_files(r);
   r->time_write = vg_display_now() - t;
   return st;
 }

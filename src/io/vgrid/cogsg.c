@@ -240,15 +240,24 @@ done:
   return st;
 }
 
-/* STEM + suffix, where path is STEM, STEM.cogsg or STEM.cogsg.gz. */
-static char *adjacent(const char *path, const char *suffix)
+/* Length of STEM in a path that is STEM, STEM.cogsg or STEM.cogsg.gz. */
+static size_t stem_length(const char *path)
 {
   size_t n = strlen(path);
-  char *to;
 
   if (n > 3 && !strcasecmp(path + n - 3, ".gz")) n -= 3;
   if (n > 6 && !strncasecmp(path + n - 6, ".cogsg", 6)) n -= 6;
-  return asprintf(&to, "%.*s%s", (int)n, path, suffix) < 0 ? NULL : to;
+  return n;
+}
+
+/* STEM + suffix. */
+static char *adjacent(const char *path, const char *suffix)
+{
+  char *to;
+
+  return asprintf(&to, "%.*s%s", (int)stem_length(path), path, suffix) < 0
+         ? NULL
+         : to;
 }
 
 static vg_status open_bc(const char *path, struct vg_input *bc,
@@ -410,22 +419,24 @@ void vg_cogsg_put_faces(struct vg_output *out, const struct vg_mesh *m,
 vg_status vg_cogsg_check(const char *stem, const struct vg_mesh *m,
                          const struct vg_cogsg_info *info, struct vg_error *err)
 {
+  const int n = (int)stem_length(stem);
+
   if (m->n_pyr || m->n_pri || m->n_hex || m->n_quad)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s.cogsg: the format holds only tetrahedra and "
+                   "%.*s.cogsg: the format holds only tetrahedra and "
                    "triangles, but the mesh has other elements; write "
                    ".b8.ugrid",
-                   stem);
+                   n, stem);
   if (m->n_tet > INT32_MAX || m->n_point > INT32_MAX || m->n_tri > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s.cogsg: %zu cells and %zu points are too many for its "
+                   "%.*s.cogsg: %zu cells and %zu points are too many for its "
                    "32-bit counts; write .b8l.ugrid",
-                   stem, m->n_tet, m->n_point);
+                   n, stem, m->n_tet, m->n_point);
   if (info->n_layer_cell > m->n_tet || info->n_layer_point > m->n_point ||
       info->n_trailing < 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s.cogsg: more layer cells or points than the mesh has",
-                   stem);
+                   "%.*s.cogsg: more layer cells or points than the mesh has",
+                   n, stem);
   return VG_OK;
 }
 

@@ -195,3 +195,20 @@ absent x.msh x.mapbc
 vanguard convert mixed.ugrid x.cogsg
 exits 1
 absent x.cogsg x.bc x.mapbc
+
+# Wrong suffixes and names are wrong usage, and a device is no file.
+vanguard convert mixed x.stl
+exits 2
+says err "give the complete name of a file, not the stem of a project"
+vanguard convert mixed.nosuch x.stl
+exits 2
+vanguard convert mixed.ugrid x.nosuch
+exits 2
+vanguard convert mixed.ugrid /dev/stdout --form su2
+exits 2
+says err "/dev/stdout: not a regular file"
+absent /dev/stdout.su2
+vanguard convert mixed.ugrid x.cogsg
+exits 1
+says err "x.cogsg: the format holds only"
+lacks err "x.cogsg.cogsg"

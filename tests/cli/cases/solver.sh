@@ -99,3 +99,13 @@ vanguard mesh -q -p p/wing-half $layers --solver-parts 9999999 \
 exits 1
 says err "9999999 solver partitions were requested"
 absent many/wing-half.b8.ugrid
+
+# If one file cannot be written, none is left.
+mkdir limited
+(ulimit -f $(($(wc -c <one/wing-half.part.4) / 1024 + 8))
+  "$program" partition -q one/wing-half.b8.ugrid -n 4 --write part,vtu \
+    --out limited/s 2>err)
+status=$?
+exits 1
+says err "limited/s.vtu: cannot write"
+absent limited/s.part.4 limited/s.vtu
