@@ -43,6 +43,7 @@ static void remove_temp_dir(struct vg_outputs *o)
 void vg_outputs_release(struct vg_outputs *o)
 {
   remove_temp_dir(o);
+  if (o->made_dir) rmdir(o->dir); /* Fails if a file was written. */
   for (size_t i = 0; i < o->n_file; i++) free(o->file[i].suffix);
   free(o->file);
   free(o->dir);
@@ -135,6 +136,35 @@ static vg_status refuse_hit(const struct vg_outputs *o,
                  suffix, hit);
 }
 
+/* Refuses a surface with the stem of the input in its folder. A later run that
+ * is given the stem could not tell it from the surface of the project. */
+static vg_status refuse_second(const struct vg_outputs *o,
+                               const struct vg_problem *p, const char *suffix,
+                               struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->read.files;
+  const char *input = *f->surface ? f->surface : f->d3m;
+  const char *slash = strrchr(f->stem, '/');
+  const char *name = slash ? slash + 1 : f->stem;
+  char *path = vg_outputs_final(o, suffix), *folder;
+  vg_status st = VG_OK;
+
+  folder = !slash
+           ? strdup(".")
+           : strndup(f->stem, slash == f->stem ? 1 : (size_t)(slash - f->stem));
+  if (!path || !folder) st = vg_fail_memory(err, "the output paths");
+  else if (*input && !*f->front && vg_format_is_tessellation(path) &&
+           !strcmp(name, o->name) && same_file(folder, o->dir))
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "writing %s next to the input %s would make the surface of "
+                 "the project %s ambiguous; use --out DIR or another --write "
+                 "list",
+                 path, input, f->stem);
+  free(path);
+  free(folder);
+  return st;
+}
+
 /* Refuses a path at which a folder exists. If this were detected only by
  * renaming, some files of this mesh would be mixed with files of another
  * one. */
@@ -178,6 +208,7 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
   if (!o->dir || !o->name) return vg_fail_memory(err, "the output paths");
   if (!*base)
     return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name", stem);
+  o->made_dir = dir && access(dir, F_OK);
   if (dir) st = vg_make_folder(dir, err);
   if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
   return st;
@@ -197,10 +228,11 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
 {
   vg_status st = vg_outputs_place(stem, dir, o, err);
 
-  if (st >= 0) st = vg_write_list(list, &o->n_item, o->item, err);
+  if (st >= 0 && *list) st = vg_write_list(list, &o->n_item, o->item, err);
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
     if (strcmp(o->item[i], "mapbc") != 0)
       st = refuse_hit(o, p, o->item[i], err);
+    if (st >= 0) st = refuse_second(o, p, o->item[i], err);
     if (st >= 0 && !is_case(o->item[i])) st = refuse_folder(o, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);

@@ -15,6 +15,7 @@ struct vg_slices_ugrid;
 
 struct vg_outputs {
   char *dir, *name; /* Target folder ("." if none is given), base name. */
+  int made_dir;     /* 1: dir did not exist; removed again if it stays empty. */
   char *temp_dir;   /* Hidden folder while writing, or NULL. */
   int lock;         /* Descriptor that locks the hidden folder on rank 0. */
   int is_guest;     /* 1: another rank makes and removes the hidden folder. */

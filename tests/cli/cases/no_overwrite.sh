@@ -27,6 +27,24 @@ vanguard mesh -q -p c/box
 exits 1
 absent c/box.cogsg
 
+# A surface next to the input would be a second surface of the project. It can
+# be written to another folder.
+mkdir stl
+cp a/box.* stl
+for suffix in stl tri obj; do
+  vanguard mesh -q -p stl/box --write b8.ugrid,$suffix
+  exits 1
+  says err "writing stl/box.$suffix next to the input stl/box.lb8.ugrid would"
+  absent stl/box.b8.ugrid stl/box.$suffix
+done
+(cd stl && ! "$program" mesh -q -p box --write obj 2>/dev/null) ||
+  fail "a second surface in the current folder"
+vanguard mesh -q -p stl/box --out stl/.. --write stl
+exits 0
+exists box.stl
+vanguard check -q stl/box
+exits 0
+
 vanguard mesh -q -p a/box --out e --write nonsense
 exits 2
 says err "unknown format 'nonsense'"
