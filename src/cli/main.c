@@ -88,15 +88,6 @@ static void keep_memory(void)
 #endif
 }
 
-/* Failure to write the report is a failure of the command. */
-static int written(int status)
-{
-  if (!fflush(stdout) && !ferror(stdout)) return status;
-  fprintf(stderr,
-          "vanguard: standard output could not be written completely\n");
-  return status == VG_EXIT_USAGE ? status : VG_EXIT_FAILED;
-}
-
 /* The child server starts before threads and MPI, while this process is small.
  * If it cannot start, processes for TetGen only cost more, so that is not an
  * error. */
@@ -109,7 +100,7 @@ static int run(const struct command *c, int argc, char **argv)
   if (c->meshes) vg_child_server_start(NULL);
   status = c->run(argc, argv);
   vg_child_server_stop();
-  return written(status);
+  return vg_cli_written(status);
 }
 
 int main(int argc, char **argv)
@@ -123,12 +114,12 @@ int main(int argc, char **argv)
   }
   if (!strcmp(word, "--version") || !strcmp(word, "-V")) {
     vg_version_print(stdout, argc > 2 && !strcmp(argv[2], "--verbose"));
-    return written(VG_EXIT_DONE);
+    return vg_cli_written(VG_EXIT_DONE);
   }
   if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
     if (argc < 3) {
       usage(stdout);
-      return VG_EXIT_DONE;
+      return vg_cli_written(VG_EXIT_DONE);
     }
     word = argv[1] = argv[2]; /* 'help COMMAND' as 'COMMAND --help' */
     argv[2] = help;

@@ -221,7 +221,7 @@ static void refuses_impossible_demos(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  assert_int_equal(vg_demo_make("swing", 0, &d, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_demo_make("swing", 0, &d, &err), VG_ERR_USAGE);
   assert_non_null(strstr(err.text, "wing-sharp-half"));
   assert_int_equal(vg_demo_make("box", 3000000000u, &d, &err), VG_ERR_INPUT);
   assert_null(d.source);

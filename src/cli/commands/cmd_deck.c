@@ -70,9 +70,7 @@ static vg_status write_json(const char *path, json_t *o, struct vg_error *err)
 
   if (!o) return vg_fail_memory(err, "the settings");
   if (path) st = vg_json_write(path, o, "the settings", err);
-  else if (json_dumpf(o, stdout, JSON_INDENT(2) | vg_json_digits(o)))
-    st = vg_fail_memory(err, "the settings");
-  else printf("\n");
+  else st = vg_json_print(stdout, o, vg_json_digits(o), "the settings", err);
   json_decref(o);
   return st;
 }

@@ -11,6 +11,14 @@ int vg_cli_exit(const struct vg_error *err)
   return err->code == VG_ERR_USAGE ? VG_EXIT_USAGE : VG_EXIT_FAILED;
 }
 
+int vg_cli_written(int status)
+{
+  if (!fflush(stdout) && !ferror(stdout)) return status;
+  fprintf(stderr,
+          "vanguard: standard output could not be written completely\n");
+  return status == VG_EXIT_USAGE ? status : VG_EXIT_FAILED;
+}
+
 int vg_cli_fail(const struct vg_error *err)
 {
   fflush(stdout);

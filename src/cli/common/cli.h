@@ -11,4 +11,9 @@
 int vg_cli_fail(const struct vg_error *err);
 int vg_cli_exit(const struct vg_error *err);
 
+/** Exit status of a command after all of its output: `status`, or
+ * VG_EXIT_FAILED with a message on stderr if standard output could not be
+ * written completely. VG_EXIT_USAGE is returned in any case. */
+int vg_cli_written(int status);
+
 #endif

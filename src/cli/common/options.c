@@ -237,15 +237,15 @@ static error_t show_help(int key, char *arg, struct argp_state *state)
   switch (key) {
   case 'h':
   case '?':
-    argp_state_help(state, state->out_stream, ARGP_HELP_STD_HELP);
-    return 0;
-  case KEY_USAGE:
     argp_state_help(state, state->out_stream,
-                    ARGP_HELP_USAGE | ARGP_HELP_EXIT_OK);
-    return 0;
+                    ARGP_HELP_STD_HELP & ~(unsigned)ARGP_HELP_EXIT_OK);
+    exit(vg_cli_written(VG_EXIT_DONE));
+  case KEY_USAGE:
+    argp_state_help(state, state->out_stream, ARGP_HELP_USAGE);
+    exit(vg_cli_written(VG_EXIT_DONE));
   case KEY_TABLE:
     put_table(state->root_argp->options, state->out_stream);
-    exit(VG_EXIT_DONE);
+    exit(vg_cli_written(VG_EXIT_DONE));
   default: return ARGP_ERR_UNKNOWN;
   }
 }
@@ -415,6 +415,24 @@ static vg_status set_option(int key, const char *text, struct vg_settings *s,
   return vg_settings_set(s, name, text, err);
 }
 
+/* A message of a member of a table, as `kind` of the farfield, does not contain
+ * the name of its option. */
+static void refuse_value(int key, const struct vg_error *err,
+                         const struct argp_state *state)
+{
+  const char *name;
+  int in_farfield;
+  const struct vg_param *p = vg_settings_name((size_t)(key - VG_KEY_SETTING),
+                                              &name, &in_farfield);
+  char option[64];
+
+  snprintf(option, sizeof option, "%s", name);
+  for (char *c = option; *c; c++)
+    if (*c == '_') *c = '-';
+  if (!strcmp(p->name, name)) argp_error(state, "%s", err->text);
+  else argp_error(state, "--%s: %s", option, err->text);
+}
+
 error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
                             const char *text, const struct argp_state *state)
 {
@@ -426,7 +444,7 @@ error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
   st = set_option(key, text, &scratch, &err);
   vg_settings_release(&scratch);
   if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
-  if (st < 0) argp_error(state, "%s", err.text);
+  if (st < 0) refuse_value(key, &err, state);
   if (vg_reserve(&kept->set, &kept->cap, kept->n + 1, sizeof *kept->set))
     return ENOMEM;
   kept->set[kept->n].key = key;

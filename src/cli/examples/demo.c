@@ -402,7 +402,7 @@ static vg_status unknown(const char *name, struct vg_error *err)
   for (size_t i = 0; i < N_ENTRY; i++)
     at += (size_t)snprintf(list + at, sizeof list - at, "%s%s", i ? ", " : "",
                            cases[i].name);
-  return vg_fail(err, VG_ERR_INPUT, "unknown example '%s'; the examples are %s",
+  return vg_fail(err, VG_ERR_USAGE, "unknown example '%s'; the examples are %s",
                  name, list);
 }
 

@@ -11,6 +11,7 @@
 #include "cli/plan/plan_output.h"
 #include "cli/plot/plot.h"
 #include "partition/advance/ways.h"
+#include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -493,7 +494,7 @@ static json_t *limits_json(const struct vg_plan *p)
 vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
 {
   json_t *o = json_object(), *rows = json_array();
-  int bad;
+  vg_status st;
 
   json_object_set_new(o, "title", vg_text_json(p->problem->asked.title));
   json_object_set_new(o, "mesh", mesh_json(p));
@@ -520,9 +521,9 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   if (p->n_leaf)
     json_object_set_new(o, "best_leaf_cells",
                         json_real(p->leaf[p->best_leaf].cells));
-  bad = !o || json_dumpf(o, stdout, JSON_INDENT(2)) || puts("") < 0;
+  st = vg_json_print(stdout, o, 0, "the forecast", err);
   json_decref(o);
-  return bad ? vg_fail_memory(err, "the forecast") : VG_OK;
+  return st;
 }
 
 /* --- figure -------------------------------------------------------------- */

@@ -12,6 +12,7 @@
 #include "cli/plan/plan.h"
 #include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
+#include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -149,7 +150,7 @@ static json_t *row_json(const struct row *r)
 static vg_status print_json(const struct plan *p, struct vg_error *err)
 {
   json_t *o = json_object(), *list = json_array();
-  int bad;
+  vg_status st;
 
   json_object_set_new(o, "title", vg_text_json(p->t.title));
   json_object_set_new(o, "record", vg_text_json(p->o->replay));
@@ -175,9 +176,9 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   for (size_t i = 0; i < p->n; i++)
     json_array_append_new(list, row_json(&p->row[i]));
   json_object_set_new(o, "forecast", list);
-  bad = !o || json_dumpf(o, stdout, JSON_INDENT(2)) || puts("") < 0;
+  st = vg_json_print(stdout, o, 0, "the forecast", err);
   json_decref(o);
-  return bad ? vg_fail_memory(err, "the forecast") : VG_OK;
+  return st;
 }
 
 static int by_workers(const void *a, const void *b)

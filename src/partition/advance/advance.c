@@ -150,7 +150,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   if (p->rank == 0) st = make_root(p, comm, &root, err);
   /* no estimate is wrong by more than half */
   if (st == VG_OK && p->rank == 0)
-    st = within_limit(p, p->report.estimate / 1.5, "would have", err);
+    st = within_limit(p, p->report.estimate / 1.5, "would have about", err);
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
   if (st == VG_OK && p->options.admit) {

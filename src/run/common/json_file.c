@@ -54,3 +54,15 @@ vg_status vg_json_write(const char *path, const json_t *o, const char *what,
   free(text);
   return st;
 }
+
+vg_status vg_json_print(FILE *to, const json_t *o, size_t flags,
+                        const char *what, struct vg_error *err)
+{
+  char *text = json_dumps(o, JSON_INDENT(2) | flags);
+
+  assert(to && what);
+  if (!text) return vg_fail_memory(err, what);
+  fprintf(to, "%s\n", text);
+  free(text);
+  return VG_OK;
+}

@@ -4,6 +4,7 @@
 #define VG_RUN_COMMON_JSON_FILE_H
 
 #include <jansson.h>
+#include <stdio.h>
 
 #include "base/status.h"
 
@@ -16,6 +17,15 @@
  * unchanged. */
 vg_status vg_json_write(const char *path, const json_t *o, const char *what,
                         struct vg_error *err);
+
+/** Prints o, indented, and a line feed. The caller finds errors of writing with
+ * ferror.
+ *
+ * @param flags  further flags of jansson, such as vg_json_digits
+ *
+ * VG_ERR_MEMORY, also if o is NULL. */
+vg_status vg_json_print(FILE *to, const json_t *o, size_t flags,
+                        const char *what, struct vg_error *err);
 
 /** Flags for json_dumpf (JSON_REAL_PRECISION) with which it writes every real
  * of a document exactly, with as few digits as possible: 0.1, not

@@ -251,6 +251,8 @@ vg_status vg_input_find(const char *name, const char *deck,
   struct vg_input_files f = { 0 };
   vg_status st = VG_OK;
 
+  if (!*name)
+    return vg_fail(err, VG_ERR_INPUT, "the name of the project is empty");
   f.stem = stem_of(name);
   if (f.stem) {
     f.surface = strdup(name);

@@ -86,6 +86,16 @@ static vg_status unknown_member(const char *file, const char *place,
   return unknown(file, place, &near, "", err);
 }
 
+static int is_setting(const char *name)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(p[i].name, name)) return 1;
+  return 0;
+}
+
 /* A member of the deck that is neither a table nor `settings`, into which
  * settings belong. */
 static vg_status unknown_top(const char *file, const char *name,
@@ -93,13 +103,10 @@ static vg_status unknown_top(const char *file, const char *name,
 {
   const struct vg_names names = { N_TOP + VG_TABLE_N, top_name, NULL };
   struct vg_suggestion near;
-  size_t n;
-  const struct vg_param *p = vg_settings_params(&n);
 
-  for (size_t i = 0; i < n; i++)
-    if (!strcmp(p[i].name, name))
-      return refuse(err, file, name,
-                    "this is a setting; give it as a member of 'settings'");
+  if (is_setting(name))
+    return refuse(err, file, name,
+                  "this is a setting; give it as a member of 'settings'");
   vg_suggest(name, &names, &near);
   if (near.n) return unknown(file, name, &near, "", err);
   vg_suggest_setting(name, &near);
@@ -265,7 +272,11 @@ static vg_status add_table(const char *file, enum vg_table_kind kind, json_t *v,
   if (kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP)
     return add_row(file, name, kind, v, s, err);
   if (!json_is_array(v))
-    return refuse(err, file, name, "must be an array of objects, one per row");
+    return refuse(err, file, name,
+                  is_setting(name)
+                    ? "must be an array of objects, one per row; the setting "
+                      "of this name is a member of 'settings'"
+                    : "must be an array of objects, one per row");
   json_array_foreach(v, i, object)
   {
     snprintf(place, sizeof place, "%s[%zu]", name, i);
@@ -320,6 +331,14 @@ static json_t *load(const char *name, const void *data, size_t size,
   return o;
 }
 
+int vg_deck_is_json(const void *data, size_t size)
+{
+  json_t *o = json_loadb(data, size, 0, NULL);
+
+  json_decref(o);
+  return o != NULL;
+}
+
 vg_status vg_deck_json_parse(const char *name, const void *data, size_t size,
                              struct vg_settings *s, struct vg_error *err)
 {
@@ -331,6 +350,12 @@ vg_status vg_deck_json_parse(const char *name, const void *data, size_t size,
 
   if (!o) return VG_ERR_FORMAT;
   vg_settings_default(&fresh);
+  if (!json_is_object(o)) {
+    st = vg_fail(
+      err, VG_ERR_FORMAT,
+      "%s: a JSON deck is an object, as in { \"settings\": { ... } }", name);
+    goto done;
+  }
   json_object_foreach(o, member, value)
   {
     st = set_top(name, member, value, &fresh, err);

@@ -15,8 +15,12 @@
 
 #include "run/settings/settings.h"
 
+/** Is the text a JSON document? */
+int vg_deck_is_json(const void *data, size_t size);
+
 /** Parse a deck that is a JSON document. vg_deck_parse and vg_deck_read call
- * this function if the first character is '{'. Parameters and results are
+ * this function if the first character is '{', and for an array, which it
+ * refuses. Parameters and results are
  * theirs; messages name the member, as in "wing.deck: sources[2].h0: ...". */
 vg_status vg_deck_json_parse(const char *name, const void *data, size_t size,
                              struct vg_settings *s, struct vg_error *err);

@@ -501,13 +501,16 @@ done:
   return st;
 }
 
-/* A deck whose first character is '{' is a JSON document. */
+/* A deck whose first character is '{' is a JSON document, and so is one that
+ * consists of an array, which is not a deck. The title of a text may begin with
+ * '['. */
 static int is_json(const struct vg_input *in)
 {
   size_t at = 0;
 
   while (at < in->size && strchr(" \t\r\n", in->data[at])) at++;
-  return at < in->size && in->data[at] == '{';
+  if (at == in->size || !strchr("{[", in->data[at])) return 0;
+  return in->data[at] == '{' || vg_deck_is_json(in->data, in->size);
 }
 
 static vg_status run(struct vg_input *in, struct vg_settings *s,

@@ -42,7 +42,10 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
 {
   char *to = item[*n];
 
-  if (!len) return VG_OK;
+  if (!len)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "write: the list has an empty entry; give formats such as "
+                   "b8.ugrid, separated by commas");
   assert(*n < VG_WRITE_ITEMS);
   if (len >= VG_WRITE_NAME)
     return vg_fail(err, VG_ERR_INPUT,
@@ -72,14 +75,20 @@ vg_status vg_write_list(const char *list, size_t *n,
 {
   vg_status st = VG_OK;
 
+  int has_more;
+
   assert(*n <= VG_WRITE_ITEMS && item);
-  while (*list && st >= 0) {
+  list += strspn(list, " ");
+  do {
     size_t len = strcspn(list, ", ");
 
     st = add_item(list, len, n, item, err);
     list += len;
-    list += strspn(list, ", ");
-  }
+    list += strspn(list, " ");
+    has_more = *list == ',';
+    list += has_more;
+    list += strspn(list, " ");
+  } while (st >= 0 && (has_more || *list));
   return st;
 }
 
@@ -104,12 +113,12 @@ char *vg_write_list_pattern(void)
   const char *word;
 
   if (!to) return NULL;
-  fprintf(to, "^(?:auto|[, ]*|[, ]*(?:(?:");
+  fprintf(to, "^(?:auto| *(?:(?:");
   for (size_t i = 0; (word = vg_write_word(i)); i++) {
     if (i) fputc('|', to);
     for (; *word; word++) fprintf(to, *word == '.' ? "\\%c" : "%c", *word);
   }
-  fprintf(to, ")(?:[, ]+|(?![^, ])))+)" END);
+  fprintf(to, ")(?: *, *(?!$)| +| *$))+)" END);
   if (fclose(to)) {
     free(text);
     return NULL;

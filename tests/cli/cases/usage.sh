@@ -139,11 +139,58 @@ says err "vanguard: nosuch: there is no such file, and no project found"
 
 # A failure to write standard output is an error, and reported.
 if [ -w /dev/full ]; then
-  "$program" demo --list >/dev/full 2>err
-  status=$?
-  exits 1
-  says err "standard output could not be written completely"
+  vanguard demo box --cells 500 --out full
+  for call in "demo --list" --help --version "help mesh" "mesh --help" \
+    "mesh --usage" deck "deck --json" "deck --schema" "plan -q -j full/box"; do
+    # shellcheck disable=SC2086
+    "$program" $call >/dev/full 2>err
+    status=$?
+    exits 1
+    says err "standard output could not be written completely"
+    lacks err "memory"
+  done
 fi
+
+# Names and values that are empty or unknown.
+vanguard demo nosuch
+exits 2
+says err "unknown example 'nosuch'"
+vanguard check ""
+exits 1
+says err "the name of the project is empty"
+for list in "" b8.ugrid,,vtu b8.ugrid, ,vtu; do
+  vanguard mesh box "--write=$list"
+  exits 2
+  says err "write: the list has an empty entry"
+done
+vanguard mesh box --farfield cube
+exits 2
+says err "--farfield: kind cannot be 'cube'"
+vanguard mesh box --farfield-lengths -1
+exits 2
+says err "--farfield-lengths: lengths is -1"
+
+# Decks in JSON that are no object, or have a setting in place of a table.
+vanguard demo box --cells 500 --out json
+for text in '[]' ' [1, 2]'; do
+  echo "$text" >json/array.deck
+  vanguard check -q json/box --deck json/array.deck
+  exits 1
+  says err "json/array.deck: a JSON deck is an object"
+done
+printf '[draft]\n\ngrowth\n1.3\n' >json/title.deck
+vanguard check -q json/box --deck json/title.deck
+exits 0
+echo '{"layers": true}' >json/table.deck
+vanguard check -q json/box --deck json/table.deck
+exits 1
+says err "the setting of this name is a member of 'settings'"
+
+# A refused run leaves no folder.
+vanguard mesh -q json/box --max-cells 10 --out refused
+exits 1
+says err "the mesh would have about"
+absent refused
 
 # Conflicting settings: wrong usage if options cause the conflict, bad input
 # if the deck alone does.
