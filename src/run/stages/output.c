@@ -222,6 +222,35 @@ static vg_status refuse_absent(const char *item, struct vg_error *err)
                  "CGNS: install libhdf5-dev and configure again");
 }
 
+/* Formats with numbers of patches, but neither names nor conditions. */
+static int needs_conditions(const char *item)
+{
+  struct vg_ugrid_kind kind;
+
+  return vg_ugrid_kind(item, &kind) || !strcmp(item, "mesh") ||
+         !strcmp(item, "meshb");
+}
+
+/* Adds the .mapbc to files that lack its content, unless a .mapbc that is not
+ * an output of Vanguard exists in its place. */
+static vg_status add_conditions(struct vg_outputs *o, struct vg_error *err)
+{
+  int lacks = 0, has = 0;
+  char *path;
+
+  for (size_t i = 0; i < o->n_item; i++) {
+    lacks |= needs_conditions(o->item[i]);
+    has |= !strcmp(o->item[i], "mapbc") || !strcmp(o->item[i], "cogsg");
+  }
+  if (!lacks || has || o->n_item == VG_WRITE_ITEMS) return VG_OK;
+  path = vg_outputs_final(o, "mapbc");
+  if (!path) return vg_fail_memory(err, "the output paths");
+  if (access(path, F_OK) || vg_mapbc_is_output(path))
+    strcpy(o->item[o->n_item++], "mapbc");
+  free(path);
+  return VG_OK;
+}
+
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
                           const char *dir, const char *list,
                           struct vg_outputs *o, struct vg_error *err)
@@ -239,7 +268,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
     if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
     if (st >= 0) st = refuse_absent(o->item[i], err);
   }
-  return st;
+  return st < 0 ? st : add_conditions(o, err);
 }
 
 void vg_outputs_sweep(const struct vg_outputs *o, struct vg_notes *notes)

@@ -45,6 +45,20 @@ exists box.stl
 vanguard check -q stl/box
 exits 0
 
+# Files without names and conditions get a .mapbc, but not in place of an input.
+for form in lb8.ugrid meshb; do
+  vanguard mesh -q -p a/box --write $form --out named_$form
+  exits 0
+  says named_$form/box.mapbc "[written by vanguard mesh]"
+done
+vanguard mesh -q -p a/box --write vtu --out unnamed
+absent unnamed/box.mapbc
+cp a/box.mapbc given.mapbc
+vanguard mesh -q -p a/box --write b8.ugrid
+exits 0
+same a/box.mapbc given.mapbc
+rm a/box.b8.ugrid
+
 vanguard mesh -q -p a/box --out e --write nonsense
 exits 2
 says err "unknown format 'nonsense'"
