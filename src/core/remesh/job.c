@@ -96,6 +96,7 @@ static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
   for (size_t t = 0; j->cap && t < m->n_tri; t++) j->cap[t] *= j->o->scale;
   r->h_max *= j->o->scale;
   j->far *= j->o->scale;
+  r->far = j->far;
   r->h_min *= j->o->scale;
 done:
   free(outer);

@@ -373,6 +373,7 @@ static void clear_report(struct vg_remesh_report *r)
   free(r->bad);
   *r = (struct vg_remesh_report){ .length = kept.length,
                                   .tolerance = kept.tolerance,
+                                  .far = kept.far,
                                   .h_min = kept.h_min,
                                   .h_max = kept.h_max,
                                   .n_round = kept.n_round + 1,

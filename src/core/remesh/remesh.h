@@ -111,9 +111,12 @@ struct vg_remesh_bad {
 
 struct vg_remesh_report {
   double length, tolerance, h_min, h_max; /* Values used. */
-  size_t n_tri[2], n_point[2];            /* Before, after. */
-  size_t n_corner, n_line;                /* Feature corners and curves; all are
-                                             preserved. */
+  double far; /* On the outer boundary of a whole domain the tolerance is 0.05
+                 of the size where the size exceeds this; 0: there is no outer
+                 boundary. */
+  size_t n_tri[2], n_point[2]; /* Before, after. */
+  size_t n_corner, n_line;     /* Feature corners and curves; all are
+                                  preserved. */
   double line_length[2];
   /* Pieces of feature curves that were dropped, because the strip between them
    * and another curve was narrower than the tolerance. */

@@ -2,6 +2,7 @@
 /* Remeshes the surface as the settings request. If one tessellation of a CAD
  * model leads to no valid surface, others are tried in a fixed order. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -237,6 +238,48 @@ static void note_faults(struct vg_boundary *b)
             r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
 }
 
+static void note_remeshing(struct vg_boundary *b)
+{
+  const struct vg_remeshing *r = &b->remeshing;
+  char outer[120] = "";
+
+  if (r->report.far > 0)
+    snprintf(outer, sizeof outer,
+             ", or 0.05 of the edge length where edges of the outer boundary "
+             "are longer than %.3g",
+             r->report.far);
+  vg_note(b->notes,
+          "the surface was remeshed (remesh_surface): %zu triangles, %zu "
+          "before; largest distance between both surfaces %.3g, tolerance "
+          "%.3g%s",
+          r->report.n_tri[1], r->report.n_tri[0],
+          r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
+          r->report.tolerance, outer);
+}
+
+/* Part of surface_size below which the longest edge is reported. */
+#define SHORT 0.5
+
+/* The tolerance also limits edges: between the facets of a coarse
+ * tessellation, longer edges would leave the input surface. */
+static void note_size(struct vg_boundary *b)
+{
+  const double asked = b->read->settings.surface_size * b->read->settings.scale;
+  const struct vg_mesh *m = &b->surface;
+  double most = 0;
+
+  for (size_t t = 0; t < m->n_tri && asked > 0; t++)
+    for (int k = 0; k < 3; k++)
+      most = fmax(most, vg_distance(m->point[m->tri[t][k]],
+                                    m->point[m->tri[t][(k + 1) % 3]]));
+  if (asked > 0 && most < SHORT * asked)
+    vg_note(b->notes,
+            "surface_size allows edges of %.3g, but the longest edge is %.3g: "
+            "curvature, gaps, sources or the tolerance %.3g require shorter "
+            "edges (surface_tolerance, edges_per_turn)",
+            asked, most, b->remeshing.report.tolerance);
+}
+
 vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
@@ -266,12 +309,8 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   take_volumes(b);
   areas(&b->surface, 1, r->area);
   note_faults(b);
-  vg_note(b->notes,
-          "the surface was remeshed (remesh_surface): %zu triangles, %zu "
-          "before; largest distance between both surfaces %.3g, tolerance %.3g",
-          r->report.n_tri[1], r->report.n_tri[0],
-          r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
-          r->report.tolerance);
+  note_remeshing(b);
+  note_size(b);
 done:
   vg_surface_sizes_release(&sizes);
   free(hard);

@@ -102,6 +102,11 @@ void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
           r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
   fprintf(to, "  tolerance %.3g, at most 0.05 of the target edge length\n",
           r->tolerance);
+  if (r->far > 0)
+    fprintf(to,
+            "  tolerance on the outer boundary, where the target edge length "
+            "exceeds %.3g: 0.05 of it\n",
+            r->far);
   distance_text(to, "distance of the remeshed from the input surface",
                 &n->off[0]);
   distance_text(to, "distance of the input from the remeshed surface",

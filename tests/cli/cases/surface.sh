@@ -223,3 +223,39 @@ says out '"corners": 8'
 says out '"edge_mean"'
 vanguard check -q new/bar.lb8.ugrid --against none.stl
 exits 1
+
+# A coarse sphere in a coarse outer boundary: the tolerance of the body limits
+# its edges, and does not apply to the long edges of the outer boundary.
+sphere() { # NAME RADIUS ORDER: 16 x 8 facets; ORDER 1 reverses them
+  awk -v name="$1" -v r="$2" -v turn="$3" '
+    function put(i, j, t, f) {
+      t = i * pi / 8; f = j * pi / 8
+      printf "vertex %.9g %.9g %.9g\n", r * sin(t) * cos(f), \
+        r * sin(t) * sin(f), i == 0 ? r : i == 8 ? -r : r * cos(t)
+    }
+    function facet(i, j, k, l, m, n) {
+      print "facet normal 0 0 0\nouter loop"
+      put(i, j)
+      if (turn) { put(m, n); put(k, l) } else { put(k, l); put(m, n) }
+      print "endloop\nendfacet"
+    }
+    BEGIN {
+      pi = atan2(0, -1)
+      print "solid " name
+      for (i = 0; i < 8; i++) for (j = 0; j < 16; j++) {
+        if (i < 7) facet(i, j, i + 1, j, i + 1, (j + 1) % 16)
+        if (i > 0) facet(i, j, i + 1, (j + 1) % 16, i, (j + 1) % 16)
+      }
+      print "endsolid " name
+    }' </dev/null
+}
+sphere body 1 0 >coarse.stl
+vanguard surface -q coarse.stl --surface-tolerance 0.001 --surface-size 0.9
+exits 0
+says out "note: surface_size allows edges of 0.9, but the longest edge is 0."
+says out "the tolerance 0.001 require shorter edges"
+{ sphere body 1 0; sphere far 20 1; } >domain.stl
+vanguard surface -q domain.stl --surface-tolerance 0.001
+exits 0
+says out "tolerance on the outer boundary, where the target edge length exceeds"
+says out "tolerance 0.001, or 0.05 of the edge length where edges of the outer"
