@@ -108,23 +108,28 @@ static vg_status count_tasks(const struct vg_run_admission *a,
   return VG_OK;
 }
 
-/* Without the cells of separators and of the largest subdomain, which only the
- * forecast of the tasks gives. */
+/* Refuses without the cells of separators and of the largest subdomain, which
+ * only the forecast of the tasks gives. leads: this rank decides for its node.
+ * *is_large: 1 on all ranks if one of them has refused. */
 static vg_status refuse_at_once(const struct vg_run_admission *a,
-                                struct vg_memory_counts c, double free_bytes,
+                                struct vg_memory_counts c, int leads,
+                                double free_bytes, int *is_large,
                                 struct vg_error *err)
 {
-  double is_large = 0;
+  double large = 0;
   struct need need;
   vg_status st;
 
   c.n_leaf = 0;
   c.largest_leaf = c.separator_cells = 0;
   need = need_of(a, &c);
-  if (!isinf(free_bytes)) is_large = !fits(a, &need, free_bytes);
-  st = is_large > 0 ? refuse(a, &need, c.cells, "at least ", free_bytes, err)
-                    : VG_OK;
-  return vg_comm_agree(a->run->comm, st, err);
+  leads = leads && !fits(a, &need, free_bytes);
+  large = leads;
+  VG_TRY(vg_comm_max(a->run->comm, 1, &large, err));
+  *is_large = large > 0;
+  if (leads) st = refuse(a, &need, c.cells, "at least ", free_bytes, err);
+done:
+  return st;
 }
 
 vg_status vg_run_admit(const void *admission, const struct vg_front *front,
@@ -137,6 +142,7 @@ vg_status vg_run_admit(const void *admission, const struct vg_front *front,
   struct vg_memory_counts c = a->counts;
   struct need need;
   double is_near = 0;
+  int is_large = 0;
   vg_status st;
 
   assert(rule);
@@ -150,7 +156,8 @@ vg_status vg_run_admit(const void *admission, const struct vg_front *front,
   if (leads) is_near = !fits(a, &need, free_bytes);
   VG_TRY(vg_comm_max(a->run->comm, 1, &is_near, err));
   if (!(is_near > 0)) goto done;
-  VG_TRY(refuse_at_once(a, c, free_bytes, err));
+  VG_TRY(refuse_at_once(a, c, leads, free_bytes, &is_large, err));
+  if (is_large) goto done;
   VG_TRY(count_tasks(a, front, load, rule, &c, err));
   need = need_of(a, &c);
   if (leads && !fits(a, &need, free_bytes))

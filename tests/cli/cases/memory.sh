@@ -5,7 +5,7 @@ vanguard demo box --cells 200000 --out .
 exits 0
 vanguard mesh -q -p box --write b8.ugrid --max-memory 0.02 --out small
 exits 1
-says err "cells outside the layers and need 0."
+says err "cells outside the layers and need at least 0."
 says err "GB on each node in the mesh check, but --max-memory allows 0.02 GB; \
 use larger sizes or more nodes"
 absent small/box.b8.ugrid
@@ -20,7 +20,7 @@ vanguard mesh -q -p box --hmax 0.0018 --surface-sizes no --max-memory 20 \
   --write b8.ugrid --out large
 exits 1
 says err "the mesh would have about 1."
-says err "e+09 cells outside the layers and need at least 2"
+says err "e+09 cells outside the layers and need at least 3"
 absent large/box.b8.ugrid
 
 # A source over the whole domain that requests billions of cells is refused
@@ -28,6 +28,7 @@ absent large/box.b8.ugrid
 # forecast would take minutes.
 vanguard demo sphere --cells 20000 --out .
 cat >source.deck <<'END'
+A source over the whole domain
 hmax
 2.6
 
