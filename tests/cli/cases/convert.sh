@@ -204,10 +204,11 @@ vanguard convert mixed.nosuch x.stl
 exits 2
 vanguard convert mixed.ugrid x.nosuch
 exits 2
-vanguard convert mixed.ugrid /dev/stdout --form su2
+mkfifo pipe
+vanguard convert mixed.ugrid pipe --form su2
 exits 2
-says err "/dev/stdout: not a regular file"
-absent /dev/stdout.su2
+says err "pipe: not a regular file"
+absent pipe.su2
 vanguard convert mixed.ugrid x.cogsg
 exits 1
 says err "x.cogsg: the format holds only"
