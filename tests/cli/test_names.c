@@ -249,7 +249,7 @@ static void misspelt_settings_are_recognised(void **state)
   size_t same = 0, n = 0;
 
   (void)state;
-  for (int round = 0; round < 20000; round++) {
+  for (int round = 0; round < 4000; round++) {
     const char *name = setting_at(NULL, next(&seed) % names.n), *found;
     char text[96];
     struct vg_suggestion s;
@@ -278,7 +278,7 @@ static void misspelt_words_of_other_programs_too(void **state)
 
   (void)state;
   while (vg_field_word(n_word, &target)) n_word++;
-  for (int round = 0; round < 20000; round++) {
+  for (int round = 0; round < 4000; round++) {
     char text[96];
     struct vg_suggestion s;
     int is_target;
