@@ -352,6 +352,8 @@ done:
 
 /* The standards define how these files begin and end. So truncated files can be
  * distinguished from damaged ones without starting a child. */
+static const char step_end[] = "END-ISO-10303-21;";
+
 static size_t trimmed(const struct vg_input *in)
 {
   size_t n = in->size;
@@ -401,15 +403,28 @@ static int ends_brep(const struct vg_input *in)
   return skip_digits(from + 1, end) > from + 1;
 }
 
+/* Bytes of a STEP file up to the end of its last end mark; 0: it has none. Some
+ * programs append text of their own. */
+static size_t step_size(const struct vg_input *in)
+{
+  const size_t n = sizeof step_end - 1;
+  const char *data = (const char *)in->data, *at = data, *found;
+  size_t size = 0;
+
+  while ((found = memmem(at, in->size - (size_t)(at - data), step_end, n))) {
+    at = found + n;
+    size = (size_t)(at - data);
+  }
+  return size;
+}
+
 static int is_whole(const struct vg_input *in, enum vg_cad_kind kind)
 {
-  static const char step[] = "END-ISO-10303-21;";
   const char *end, *at = last_line(in, &end);
-  size_t n = strlen(step);
 
   if (kind == VG_CAD_BREP) return ends_brep(in);
   if (kind == VG_CAD_IGES) return end - at >= 73 && at[72] == 'T';
-  return trimmed(in) >= n && !memcmp(end - n, step, n);
+  return step_size(in) > 0;
 }
 
 static const struct {
@@ -451,6 +466,21 @@ static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                               o->patches, n,        o->tolerance,
                               o->chord,   o->angle, o->least,
                               0,          0 };
+}
+
+/* Removes from the view of a STEP file what follows its end mark. */
+static void drop_text_after_end(struct vg_input *view, const struct call *k)
+{
+  const size_t end = step_size(view), all = trimmed(view);
+  char text[128];
+
+  if (end < all && k->o->note) {
+    snprintf(text, sizeof text,
+             "%zu bytes after the end mark %s were not read", all - end,
+             step_end);
+    k->o->note(k->o->user, text);
+  }
+  view->size = end;
 }
 
 /* If the child stops reading, it may have sent the reason before it ended. */
@@ -500,16 +530,18 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
                        struct vg_error *err)
 {
   struct call k = { c, in->path, o, vg_clock() };
+  struct vg_input view = *in;
   vg_status st;
 
   if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
     return vg_fail(err, VG_ERR_INPUT, "%s: %d is not a kind of CAD file",
                    in->path, (int)kind);
   VG_TRY(check_frame(in, kind, err));
+  if (kind == VG_CAD_STEP) drop_text_after_end(&view, &k);
   VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
-  send_file(&k, in, kind, 0, with_volume);
+  send_file(&k, &view, kind, 0, with_volume);
   st = await_surface(&k, out, err);
   if (st < 0 && crashed_uniting(&k)) {
     if (o->note)
@@ -517,7 +549,7 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
               "Open CASCADE crashed while it united solids that touch or "
               "overlap; the file was read again without uniting them");
     VG_TRY(start_child(c, err));
-    send_file(&k, in, kind, 1, with_volume);
+    send_file(&k, &view, kind, 1, with_volume);
     st = await_surface(&k, out, err);
   }
   c->has_model = st >= 0;

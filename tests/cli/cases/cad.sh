@@ -124,6 +124,12 @@ says err "remove file_unit"
 vanguard check "$cad/edges.brep" --remesh-surface no
 exits 1
 says err "there are no faces in it"
+# Text after the end mark of a STEP file belongs to another program.
+{ cat "$cad/box.step"; printf '//+\nField[1] = Distance;\n'; } >more.step
+vanguard check more.step --remesh-surface no
+exits 0
+says out "CAD: 25 bytes after the end mark END-ISO-10303-21; were not read"
+says out "patches                                6"
 head -c 9000 "$cad/wing.step" >cut.step
 vanguard mesh -q -p cut.step --out c
 exits 1
