@@ -327,8 +327,9 @@ struct vanguard_forecast {
   double n_cell, n_tet, n_pri, n_point;
   double n_layer_cell, n_layer_point; /* of these, in the layers */
   double n_wall_point;                /* points from which layers grow */
-  int32_t has_grown_layers; /* 1: the layers were grown; 0: there are none, or
-                               they were estimated from the growth law */
+  int32_t has_grown_layers; /* 1: the layers were grown; 0: no layers were
+                               requested, or they were estimated from the
+                               growth law */
   size_t n_subdomain;       /* subdomains that one thread fills at a time */
   double seconds;           /* of the whole run on this machine */
   double work;              /* of one thread for the same run */
