@@ -14,6 +14,8 @@
 #include "run/settings/plan_options.h"
 
 #define FARFIELD_TRIANGLES 1e8
+/* Distance from a plane, relative to the size of the surface: above rounding. */
+#define PLANE 1e-9
 #define SHOWN_RIMS 3
 /* S68: finest octree cells of the sizing field for a farfield along the Mach
  * cone, relative to those of the field of the cells. */
@@ -100,6 +102,28 @@ int vg_is_only_open(const struct vg_surface_report *r)
          r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
+/* Do all triangles lie in one plane? Then no cap makes a volume of them. */
+static int is_plane(const struct vg_mesh *m)
+{
+  double lo[3], hi[3], u[3], v[3], n[3], normal[3] = { 0, 0, 0 }, most = 0;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    vg_sub(m->point[m->tri[i][1]], m->point[m->tri[i][0]], u);
+    vg_sub(m->point[m->tri[i][2]], m->point[m->tri[i][0]], v);
+    vg_cross(u, v, n);
+    if (!(vg_norm(n) > most)) continue;
+    most = vg_norm(n);
+    for (int k = 0; k < 3; k++) normal[k] = n[k] / most;
+  }
+  vg_mesh_bounds(m, lo, hi);
+  vg_sub(hi, lo, u);
+  for (size_t i = 0; i < m->n_point; i++) {
+    vg_sub(m->point[i], m->point[0], v);
+    if (fabs(vg_dot(v, normal)) > PLANE * vg_norm(u)) return 0;
+  }
+  return most > 0;
+}
+
 /* For each rim: "0.2 wide, 24 edges, around (0, 0, 1)". */
 static void list_rims(const struct vg_rim *rim, size_t n, char *text,
                       size_t size)
@@ -117,6 +141,17 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
   if (n > SHOWN_RIMS) snprintf(text + at, size - at, "; ...");
 }
 
+vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
+                                   struct vg_error *err)
+{
+  if (!is_plane(&b->surface)) return VG_OK;
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: all triangles lie in one plane: such a surface bounds no "
+                 "volume. Meshes are three-dimensional: give a body, or "
+                 "extrude the section in the CAD system",
+                 b->read->files.stem);
+}
+
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
                                   struct vg_display *show, struct vg_error *err)
 {
@@ -124,8 +159,11 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
   struct vg_rim *rim = NULL;
   char list[400], half[160] = "", remedy[120];
   size_t n = 0;
-  vg_status st = vg_domain_rims(&b->surface, &n, &rim, &why);
+  vg_status st;
 
+  st = vg_boundary_refuse_plane(b, err);
+  if (st < 0) return st;
+  st = vg_domain_rims(&b->surface, &n, &rim, &why);
   if (b->rim_gap > 0) {
     free(rim);
     return vg_fail(err, VG_ERR_GEOMETRY,

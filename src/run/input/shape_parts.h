@@ -91,6 +91,11 @@ struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err);
 
+/** Returns VG_ERR_GEOMETRY if all triangles lie in one plane, which no cap
+ * closes. */
+vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
+                                   struct vg_error *err);
+
 /** Returns VG_ERR_GEOMETRY with a message that lists the rims of an open
  * surface and describes how to close them. */
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,

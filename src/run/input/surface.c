@@ -212,6 +212,7 @@ static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
   size_t n_hole, n_tri;
   vg_status st;
 
+  VG_TRY(vg_boundary_refuse_plane(b, err));
   options.threads = b->threads;
   VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
                        b->read->settings.source, &b->surface, &sizing, err));

@@ -24,6 +24,21 @@ says err "the surface is open"
 exists open.defects.vtu
 absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
 
+# A plane sheet bounds no volume, whatever closes its rim.
+cat >sheet.ugrid <<'END'
+4 2 0 0 0 0 0
+0 0 1  2 0 2  0 1 1  2 1 2
+1 2 4  1 4 3
+1 1
+END
+for option in "" "--close-holes yes" "--half z" "--flow internal"; do
+  # shellcheck disable=SC2086 # an option and its value
+  vanguard mesh -q -p sheet $option
+  exits 1
+  says err "all triangles lie in one plane: such a surface bounds no volume"
+  lacks err "close-holes"
+done
+
 # Two tetrahedra that intersect.
 cat >cross.ugrid <<'END'
 8 8 0 0 0 0 0
