@@ -6,7 +6,7 @@ command -v python3 >/dev/null || skip "python3 is not installed"
 for name in $("$program" demo --list | awk '{ print $1 }'); do
   vanguard demo "$name" --cells 3000 --out demo
 done
-n=300
+n=150
 [ "${VG_LONG:-0}" = 0 ] || n=5000
 # Texts that other tests write to files: those of three lines or more that the
 # program reads as decks. With them, the corpus of the fuzzer.
