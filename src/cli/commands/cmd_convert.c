@@ -529,7 +529,7 @@ int vg_cmd_convert(int argc, char **argv)
            "everything that is lost. IN and OUT are names of files, not stems "
            "of projects."
   };
-  struct arguments a = { NULL };
+  struct arguments a = { 0 };
   struct conversion c = { .a = &a };
   struct vg_display show;
   struct vg_error err = VG_ERROR_INIT;
