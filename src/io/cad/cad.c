@@ -475,9 +475,8 @@ static void drop_text_after_end(struct vg_input *view, const struct call *k)
   char text[128];
 
   if (end < all && k->o->note) {
-    snprintf(text, sizeof text,
-             "%zu bytes after the end mark %s were not read", all - end,
-             step_end);
+    snprintf(text, sizeof text, "%zu bytes after the end mark %s were not read",
+             all - end, step_end);
     k->o->note(k->o->user, text);
   }
   view->size = end;

@@ -14,7 +14,7 @@
 #include "run/settings/plan_options.h"
 
 #define FARFIELD_TRIANGLES 1e8
-/* Distance from a plane, relative to the size of the surface: above rounding. */
+/* Distance from a plane, relative to the size of the surface. */
 #define PLANE 1e-9
 #define SHOWN_RIMS 3
 /* S68: finest octree cells of the sizing field for a farfield along the Mach
