@@ -435,8 +435,7 @@ static vg_status convert(struct conversion *c, struct vg_display *show,
   check_ids(c);
   st = write_mapbc(c, err);
   if (st < 0) unlink(c->file);
-  if (st < 0) goto done;
-  note_mesh(c);
+  else note_mesh(c);
 done:
   return st;
 }
@@ -453,7 +452,6 @@ static void print_json(const struct conversion *c)
   double lo[3], hi[3];
 
   bounds(c, lo, hi);
-
   json_array_append_new(files, vg_text_json(c->file));
   if (c->mapbc) json_array_append_new(files, vg_text_json(c->mapbc));
   o = json_pack("{s:o s:s s:o s:o s:o s:f}", "file", vg_text_json(c->a->in),

@@ -408,14 +408,10 @@ static int ends_brep(const struct vg_input *in)
 static size_t step_size(const struct vg_input *in)
 {
   const size_t n = sizeof step_end - 1;
-  const char *data = (const char *)in->data, *at = data, *found;
-  size_t size = 0;
 
-  while ((found = memmem(at, in->size - (size_t)(at - data), step_end, n))) {
-    at = found + n;
-    size = (size_t)(at - data);
-  }
-  return size;
+  for (size_t end = in->size; end >= n; end--)
+    if (!memcmp(in->data + end - n, step_end, n)) return end;
+  return 0;
 }
 
 static int is_whole(const struct vg_input *in, enum vg_cad_kind kind)

@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/table.h"
 #include "io/mesh/ugrid.h"
+#include "io/stream/convention.h"
 
 /* Bytes at the start of a file by which its kind is checked. */
 #define HEAD 65536
@@ -356,19 +357,6 @@ done:
   return st;
 }
 
-static uint64_t boundary_end(const struct vg_mesh *m)
-{
-  const uint32_t *tri = (const uint32_t *)m->tri;
-  const uint32_t *quad = (const uint32_t *)m->quad;
-  uint64_t end = 0;
-
-  for (size_t i = 0; i < 3 * m->n_tri; i++)
-    if (tri[i] >= end) end = (uint64_t)tri[i] + 1;
-  for (size_t i = 0; i < 4 * m->n_quad; i++)
-    if (quad[i] >= end) end = (uint64_t)quad[i] + 1;
-  return end;
-}
-
 /* Points up to the last one of the boundary. */
 static vg_status read_boundary_points(struct vg_ugrid_slices *u,
                                       struct vg_error *err)
@@ -392,7 +380,7 @@ static void serve(struct vg_ugrid_slices *u, size_t slice_cells)
     s->n_cell[k] = u->count[3 + k];
     s->n_served += s->n_cell[k];
   }
-  s->n_boundary_point = boundary_end(&u->boundary);
+  s->n_boundary_point = vg_mesh_boundary_end(&u->boundary);
   s->boundary = &u->boundary;
   s->n_slice = (size_t)((s->n_served > s->n_point ? s->n_served : s->n_point) /
                         slice_cells) +

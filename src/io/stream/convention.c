@@ -288,8 +288,7 @@ static void face_release(struct face_table *t)
   free(t->on);
 }
 
-/* The number after the last point of the boundary. */
-static size_t boundary_end(const struct vg_mesh *m)
+size_t vg_mesh_boundary_end(const struct vg_mesh *m)
 {
   const uint32_t *tri = (const uint32_t *)m->tri;
   const uint32_t *quad = (const uint32_t *)m->quad;
@@ -314,7 +313,7 @@ static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
   int bad = vg_table_init(&t->table, n);
 
   t->found = vg_calloc(n, 1);
-  t->n_on = boundary_end(m);
+  t->n_on = vg_mesh_boundary_end(m);
   t->on = vg_calloc(t->n_on, 1);
   if (bad || !t->found || !t->on) {
     face_release(t);

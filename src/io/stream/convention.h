@@ -29,6 +29,10 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
  * returns their number. */
 size_t vg_mesh_turn_cells(struct vg_mesh *m);
 
+/** The number after the last point of the boundary, from the faces only; 0
+ * without faces. */
+size_t vg_mesh_boundary_end(const struct vg_mesh *m);
+
 /** Sides of the boundary faces on which there are cells, for a mesh whose cells
  * come in parts. Not thread-safe. */
 struct vg_face_sides;

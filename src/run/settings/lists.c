@@ -74,7 +74,6 @@ vg_status vg_write_list(const char *list, size_t *n,
                         char (*item)[VG_WRITE_NAME], struct vg_error *err)
 {
   vg_status st = VG_OK;
-
   int has_more;
 
   assert(*n <= VG_WRITE_ITEMS && item);
