@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -166,6 +170,167 @@ void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
   later.shape.Nullify();
 }
 
+/* Pairs of copies that do not belong to solids: a face that the file has twice,
+ * or the wall between two closed shells of loose faces, of which each has its
+ * own copy.
+ *
+ *        shell A              shell B           other faces at the edge e:
+ *     ____________  e   e  ____________         2 if A and B share a wall,
+ *                 | |   | |                     1 if A has its cap twice
+ *                 | |   | |  copies
+ *     ____________|_|   |_|____________
+ */
+class Pairs
+{
+public:
+  explicit Pairs(Model &model) : model_(model), partner_(model.faces.size(), 0)
+  {
+  }
+
+  void add(size_t i, size_t j)
+  {
+    pairs_.push_back({ std::min(i, j), std::max(i, j) });
+    partner_[i]++;
+    partner_[j]++;
+  }
+
+  /* Drop both faces of walls and the second face of other pairs. */
+  void drop(const Talk &talk)
+  {
+    if (pairs_.empty()) return;
+    list_edges();
+    std::vector<Votes> votes;
+    for (const Pair &p : pairs_) votes.push_back(count(p));
+    spread(votes);
+    for (size_t k = 0; k < pairs_.size(); k++) {
+      const Pair &p = pairs_[k];
+
+      if (votes[k].is_wall() && partner_[p.i] == 1 && partner_[p.j] == 1)
+        drop_wall(p, talk);
+      else drop_copy(model_, p.i, p.j, true, talk);
+    }
+  }
+
+private:
+  struct Pair {
+    size_t i, j;
+  };
+  struct Votes {
+    size_t two = 0, other = 0; /* places of the rim with two other faces */
+    std::vector<size_t> near;  /* pairs that share edges with this one */
+
+    bool is_wall() const
+    {
+      return two && !other;
+    }
+  };
+  struct Edge {
+    size_t face;
+    TopoDS_Edge edge;
+    Bnd_Box box;
+  };
+
+  void list_edges()
+  {
+    for (size_t i = 0; i < model_.faces.size(); i++) {
+      const TopoDS_Face &face = model_.faces[i].shape;
+
+      if (face.IsNull() || model_.faces[i].solid >= 0) continue;
+      for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+        const TopoDS_Edge &edge = TopoDS::Edge(e.Current());
+        Bnd_Box box;
+
+        if (BRep_Tool::Degenerated(edge)) continue;
+        BRepBndLib::Add(edge, box, Standard_False);
+        edges_.push_back({ i, edge, box });
+      }
+    }
+  }
+
+  /* Count the other faces in the middle of each edge of a pair. */
+  Votes count(const Pair &p) const
+  {
+    Votes out;
+
+    for (TopExp_Explorer e(model_.faces[p.i].shape, TopAbs_EDGE); e.More();
+         e.Next()) {
+      if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
+      BRepAdaptor_Curve c(TopoDS::Edge(e.Current()));
+      count_at(p, c.Value((c.FirstParameter() + c.LastParameter()) / 2), out);
+    }
+    return out;
+  }
+
+  void count_at(const Pair &p, const gp_Pnt &at, Votes &out) const
+  {
+    const double near = copy_near * model_.face_size;
+    const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(at);
+    Bnd_Box around;
+    std::set<size_t> faces;
+    bool is_inside = false;
+
+    around.Add(at);
+    around.Enlarge(near);
+    for (const Edge &e : edges_) {
+      if (e.face == p.i || e.face == p.j || e.box.IsOut(around)) continue;
+      BRepExtrema_DistShapeShape to(vertex, e.edge);
+      if (!to.IsDone() || to.Value() > near) continue;
+      if (!partner_[e.face]) faces.insert(e.face);
+      else is_inside = true;
+      if (partner_[e.face]) out.near.push_back(e.face);
+    }
+    if (is_inside && faces.empty()) return; /* between two pairs */
+    ++(faces.size() == 2 ? out.two : out.other);
+  }
+
+  /* Pairs that share edges form one wall or none. */
+  void spread(std::vector<Votes> &votes) const
+  {
+    std::vector<size_t> of(model_.faces.size(), SIZE_MAX), todo;
+    std::vector<bool> seen(pairs_.size(), false);
+
+    for (size_t k = 0; k < pairs_.size(); k++)
+      of[pairs_[k].i] = of[pairs_[k].j] = k;
+    for (size_t k = 0; k < pairs_.size(); k++) {
+      Votes sum;
+
+      if (seen[k]) continue;
+      seen[k] = true;
+      todo.assign(1, k);
+      for (size_t next = 0; next < todo.size(); next++) {
+        sum.two += votes[todo[next]].two;
+        sum.other += votes[todo[next]].other;
+        for (size_t face : votes[todo[next]].near)
+          if (!seen[of[face]]) {
+            seen[of[face]] = true;
+            todo.push_back(of[face]);
+          }
+      }
+      for (size_t one : todo) {
+        votes[one].two = sum.two;
+        votes[one].other = sum.other;
+      }
+    }
+  }
+
+  void drop_wall(const Pair &p, const Talk &talk)
+  {
+    Face &f = model_.faces[p.i], &g = model_.faces[p.j];
+
+    talk.note(format("%s and face %u at %s are a wall between two closed "
+                     "shells and were dropped",
+                     named(f).c_str(), g.number,
+                     place(point_of(f.shape)).c_str()));
+    f.shape.Nullify();
+    g.shape.Nullify();
+  }
+
+  Model &model_;
+  std::vector<Pair> pairs_;
+  std::vector<size_t> partner_; /* number of pairs of each face */
+  std::vector<Edge> edges_;     /* of all loose faces */
+};
+
 /* Walls between solids, which are single faces or two copies of one face. */
 class Walls
 {
@@ -277,6 +442,7 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
                  const Talk &talk)
 {
   Walls walls(model, list);
+  Pairs loose(model);
   Uses uses(model);
   std::vector<bool> is_wall(model.faces.size(), false);
 
@@ -300,6 +466,11 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
       if (model.faces[b.at].shape.IsNull() || is_wall[b.at] ||
           !are_copies(model, a, b))
         continue;
+      if (model.faces[a.at].solid < 0 && model.faces[b.at].solid < 0) {
+        loose.add(a.at, b.at);
+        is_wall[std::max(a.at, b.at)] = true;
+        continue;
+      }
       if (is_between(model.faces[a.at], model.faces[b.at])) {
         walls.add_pair(std::min(a.at, b.at), std::max(a.at, b.at));
         is_wall[a.at] = is_wall[b.at] = true;
@@ -313,6 +484,7 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
       drop_copy(model, a.at, b.at, again, talk);
       if (later.shape.IsNull()) uses.remove(copy);
     }
+  loose.drop(talk);
   walls.drop(again, talk);
 }
 
