@@ -305,11 +305,12 @@ static void failures_are_reported(void **state)
 static vg_status count_cells(void *context, const struct vg_slice *slice,
                              struct vg_error *err)
 {
-  size_t *n = context;
+  size_t *n = (size_t *)context + slice->cell_at[VG_SLICE_TET], most = 0;
 
+  /* Threads show slices with different cells. */
   for (size_t i = 0; i < slice->n_cell[VG_SLICE_TET]; i++)
-    n[slice->cell_at[VG_SLICE_TET] + i]++;
-  return n[0] < 2 ? VG_OK : vg_fail(err, VG_ERR_IO, "no more room");
+    if (++n[i] > most) most = n[i];
+  return most < 2 ? VG_OK : vg_fail(err, VG_ERR_IO, "no more room");
 }
 
 static void every_slice_is_shown(void **state)
