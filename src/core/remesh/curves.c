@@ -114,6 +114,14 @@ int vg_curves_is_hard(const struct vg_curves_options *o, const struct vg_ref *r,
          o->patch[p].bc_fun3d != o->patch[q].bc_fun3d;
 }
 
+static int is_kept(const struct vg_curves_options *o, const struct vg_ref *r,
+                   uint32_t h)
+{
+  const uint32_t p = o->tri_patch[h / 3], q = o->tri_patch[r->mate[h] / 3];
+
+  return o->kept && p != q && o->kept[p] && o->kept[q];
+}
+
 static void set_line(struct finder *f, uint32_t h, int on)
 {
   uint32_t ends[2] = { vg_ref_from(f->r, h), vg_ref_to(f->r, h) };
@@ -141,7 +149,8 @@ static void find_lines(struct finder *f)
 
     if (m != VG_REF_NONE && m < h) continue;
     if (vg_curves_is_hard(f->o, f->r, h) ||
-        (!is_closed(f, h) && cosine(f, h) < f->sharp))
+        (!is_closed(f, h) &&
+         (cosine(f, h) < f->sharp || is_kept(f->o, f->r, h))))
       set_line(f, h, 1);
   }
 }

@@ -40,6 +40,9 @@ struct vg_curves_options {
   const uint8_t *hard;   /* [n_patch] 1: the borders of the patch are fixed. May
                             be NULL. Borders between patches with different
                             conditions are always fixed. */
+  const uint8_t *kept;   /* [n_patch] 1: borders between two such patches are
+                            feature edges, too, unless they are closed. May be
+                            NULL. */
   const double *stretch; /* [3 n_tri] Half-edges with values above 1 are feature
                             edges; may be NULL. */
   const uint8_t *closed; /* [3 n_tri] Edges that are not sharp edges at any

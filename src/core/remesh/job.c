@@ -11,8 +11,8 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/remesh/borders.h"
 #include "core/remesh/sizes.h"
-#include "core/remesh/strips_cut.h"
 #include "core/remesh/work.h"
 #include "core/sizing/sizing_source.h"
 #include "core/surface/envelope.h"
@@ -24,8 +24,6 @@
 #define H_MIN 2e-4   /* of the length: twice the tolerance */
 #define H_OUTER 0.04 /* of the length of the domain */
 #define OUTER 0.9    /* S27: share of a patch's triangles that makes it outer */
-#define LEAP 10.0    /* S47: largest ratio of grown to interpolated mid size */
-#define CUTS 256     /* most pieces of such an edge */
 #define TRIANGLES 3e8 /* limit of the estimated number of new triangles */
 
 static double length_of(const struct vg_mesh *m, const uint8_t *outer)
@@ -244,8 +242,8 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
 {
   const struct vg_remesh_options *o = j->o;
   struct vg_curves_options c = {
-    o->feature_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
-    o->stretch,       NULL
+    o->feature_angle, j->jag,  j->whole->tri_patch, j->whole->patch,
+    o->hard,          j->kept, o->stretch,          NULL
   };
   vg_status st;
 
@@ -263,10 +261,7 @@ done:
 
 /* --- small faults -------------------------------------------------------- */
 
-/* Replace the working surface by m, and the per-point and per-triangle options
- * by arrays for m. tri_from [n_tri] and half_from [3 n_tri] are the numbers in
- * the previous surface; VG_REF_NONE: new. */
-static vg_status adopt(struct vg_remesh_job *j, struct vg_mesh *m,
+vg_status vg_job_adopt(struct vg_remesh_job *j, struct vg_mesh *m,
                        const uint32_t *tri_from, const uint32_t *half_from,
                        double **cap, struct vg_error *err)
 {
@@ -316,6 +311,7 @@ static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
                                            j->whole->patch,
                                            o->hard,
                                            NULL,
+                                           NULL,
                                            NULL };
   struct vg_clean c = VG_CLEAN_INIT;
   double *cap = NULL;
@@ -336,105 +332,10 @@ static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
     for (size_t p = 0; p < c.mesh.n_point; p++)
       cap[p] = o->cap[c.point_from[p]];
   }
-  VG_TRY(adopt(j, &c.mesh, c.tri_from, NULL, &cap, err));
+  VG_TRY(vg_job_adopt(j, &c.mesh, c.tri_from, NULL, &cap, err));
 done:
   free(cap);
   vg_clean_release(&c);
-  return st;
-}
-
-/* --- long feature edges --------------------------------------------------- */
-
-/* Number of pieces into which feature edge h must be split. Sizes are
- * interpolated linearly between its ends; more than one piece is needed if the
- * size at the midpoint would be much smaller than growth from the ends
- * permits. */
-static int pieces(const struct vg_remesh_job *j, uint32_t h)
-{
-  const struct vg_ref *r = &j->ref;
-  const double a = r->size[vg_ref_from(r, h)], b = r->size[vg_ref_to(r, h)];
-  const double length = vg_distance(r->point[vg_ref_from(r, h)],
-                                    r->point[vg_ref_to(r, h)]);
-  const double grown = fmin(j->r.h_max, fmin(a, b) + r->slope * length / 2);
-
-  if (!(grown > LEAP * (a + b) / 2)) return 1;
-  return length / grown < CUTS ? (int)(length / grown) + 2 : CUTS;
-}
-
-/* [3 whole->n_tri] Number of pieces of each edge, stored at one of its
- * half-edges. */
-static size_t count_pieces(const struct vg_remesh_job *j, uint16_t *n)
-{
-  size_t sum = 0;
-
-  for (uint32_t h = 0; h < 3 * j->ref.n_tri; h++) {
-    const uint32_t g = j->ref.mate[h];
-    uint32_t from = j->strips.n ? j->strips.half_from[h] : h;
-    int k;
-
-    if (!j->curves.line[h] || (g != VG_REF_NONE && g < h) ||
-        from == VG_REF_NONE)
-      continue;
-    k = pieces(j, h);
-    if (k <= n[from] || k < 2) continue;
-    sum++;
-    n[from] = (uint16_t)k;
-  }
-  return sum;
-}
-
-static vg_status cut_all(struct vg_remesh_job *j, const uint16_t *n,
-                         struct vg_strips *s, struct vg_error *err)
-{
-  struct vg_ref faces = VG_REF_INIT;
-  struct vg_strip_cutter cut = { .s = s };
-  vg_status st;
-
-  VG_TRY(vg_ref_set_faces(&faces, j->whole, &j->o->stop, err));
-  VG_TRY(vg_strip_cutter_begin(&cut, &faces, j->whole, err));
-  for (uint32_t h = 0; h < 3 * j->whole->n_tri; h++) {
-    const uint32_t g = faces.mate[h];
-    int k = n[h];
-
-    if (g != VG_REF_NONE && g < h) continue;
-    if (g != VG_REF_NONE && n[g] > k) k = n[g];
-    for (int i = 1; i < k; i++)
-      VG_TRY(vg_strip_cut(&cut, h, (double)i / k, (i + 1.0) / k, err));
-  }
-done:
-  vg_strip_cutter_release(&cut);
-  vg_ref_release(&faces);
-  return st;
-}
-
-/* Split long feature edges, and rebuild the reference for the split surface. */
-static vg_status cut_edges(struct vg_remesh_job *j, int closes,
-                           struct vg_error *err)
-{
-  const size_t n_old = j->whole->n_point;
-  uint16_t *n = vg_calloc(3 * j->whole->n_tri, sizeof *n);
-  struct vg_strips s = VG_STRIPS_INIT;
-  double *cap = NULL;
-  vg_status st = VG_OK;
-
-  if (!n) VG_TRY(vg_fail_memory(err, "the edges of the surface"));
-  if (!count_pieces(j, n)) goto done;
-  j->is_cut = 1;
-  VG_TRY(cut_all(j, n, &s, err));
-  if (j->o->cap) {
-    cap = vg_alloc(s.mesh.n_point, sizeof *cap);
-    if (!cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
-    memcpy(cap, j->o->cap, n_old * sizeof *cap);
-    for (size_t i = 0; i < s.n_new; i++)
-      cap[n_old + i] = fmin(cap[s.ends[i][0]], cap[s.ends[i][1]]);
-  }
-  vg_job_release_reference(j);
-  VG_TRY(adopt(j, &s.mesh, s.tri_from, s.half_from, &cap, err));
-  VG_TRY(vg_job_set_reference(j, closes, err));
-done:
-  free(n);
-  free(cap);
-  vg_strips_release(&s);
   return st;
 }
 
@@ -455,6 +356,16 @@ static vg_status keep_fixed(struct vg_remesh_job *j, struct vg_error *err)
   return VG_OK;
 }
 
+/* --- borders between patches --------------------------------------------- */
+
+static vg_status keep_borders(struct vg_remesh_job *j, struct vg_error *err)
+{
+  if (!j->o->keeps_borders || j->frees_borders) return VG_OK;
+  j->kept = vg_calloc(j->whole->n_patch, 1);
+  if (!j->kept) return vg_fail_memory(err, "the borders of the patches");
+  return vg_borders_keep(j->whole, j->r.h_max, j->kept, err);
+}
+
 /* --- preparation ---------------------------------------------------------- */
 
 vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
@@ -464,6 +375,7 @@ vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
 
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
+  VG_TRY(keep_borders(j, err));
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
   if (o->n_source)
@@ -472,24 +384,25 @@ vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
   if (o->is_reference && !j->looks) VG_TRY(clean(j, err));
   VG_TRY(keep_fixed(j, err));
   VG_TRY(vg_job_set_reference(j, !j->looks && !o->fixed, err));
-  if (!j->looks && !j->no_cuts) VG_TRY(cut_edges(j, 1, err));
+  if (!j->looks && !o->fixed) VG_TRY(vg_job_cut_edges(j, err));
 done:
   return st;
 }
 
 vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
-                         const struct vg_remesh_options *o,
+                         const struct vg_remesh_options *o, int no_cuts,
                          struct vg_error *err)
 {
   vg_job_release(j);
   j->cap = j->own_cap = j->own_stretch = NULL;
+  j->kept = NULL;
   j->source = NULL;
   j->keep = NULL;
   j->n_source = j->cap_source = j->n_keep = 0;
   j->given = j->whole = m;
   j->o = o;
   j->is_cut = 0;
-  j->no_cuts = 1;
+  j->no_cuts = no_cuts;
   return vg_job_prepare(j, err);
 }
 
@@ -499,6 +412,7 @@ void vg_job_release(struct vg_remesh_job *j)
   free(j->source);
   free(j->own_cap);
   free(j->own_stretch);
+  free(j->kept);
   free(j->keep);
   vg_job_release_reference(j);
   vg_mesh_release(&j->base);

@@ -575,7 +575,28 @@ static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
   /* Larger sizes at midpoints may have caused intersections, or may prevent
    * needles next to a sharp edge of zero thickness from being split. */
   if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
-  if (!*sound) VG_TRY(vg_job_restart(j, m, o, err));
+  if (!*sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
+done:
+  return st;
+}
+
+/* An attempt in which the borders between patches are feature edges. If it
+ * fails, they are not. */
+static vg_status begin_with_borders(struct vg_remesh_job *j,
+                                    const struct vg_mesh *m,
+                                    const struct vg_remesh_options *o,
+                                    struct vg_mesh *out, int *sound,
+                                    struct vg_error *err)
+{
+  const struct attempt once = { 1, 0, 0 };
+  vg_status st = VG_OK;
+
+  if (!j->kept) return VG_OK;
+  VG_TRY(make(j, out, &once, sound, err));
+  if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
+  if (*sound) goto done;
+  j->frees_borders = 1;
+  VG_TRY(vg_job_restart(j, m, o, 0, err));
 done:
   return st;
 }
@@ -590,7 +611,8 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   int sound = 0;
   vg_status st;
 
-  VG_TRY(begin_simply(j, m, o, out, &sound, err));
+  VG_TRY(begin_with_borders(j, m, o, out, &sound, err));
+  if (!sound) VG_TRY(begin_simply(j, m, o, out, &sound, err));
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
                                !j->strips.n && round == rounds ? 1 : 0 };
@@ -619,6 +641,7 @@ static void tell(struct vg_remesh_job *j, const struct vg_mesh *m,
   j->r.n_tri[1] = out->n_tri;
   j->r.n_point[0] = m->n_point;
   j->r.n_point[1] = out->n_point;
+  j->r.keeps_borders = j->kept != NULL;
   j->r.n_corner = j->curves.n_corner;
   j->r.n_line = j->curves.n_curve;
   j->r.line_length[0] = j->curves.length;

@@ -74,6 +74,9 @@ struct vg_remesh_options {
                                     is checked. */
   const uint8_t *hard;           /* [n_patch] 1: all borders of the patch are
                                     fixed; may be NULL. */
+  int keeps_borders;             /* 1: so are the borders of other patches, unless
+                                    they are so narrow that this takes many
+                                    triangles. */
   const uint8_t *fixed;          /* [n_patch] 1: the triangles of the patch are
                                     kept unchanged. Strips are then not closed,
                                     and faults of the input not removed
@@ -115,6 +118,7 @@ struct vg_remesh_report {
                  of the size where the size exceeds this; 0: there is no outer
                  boundary. */
   size_t n_tri[2], n_point[2]; /* Before, after. */
+  int keeps_borders;           /* Borders between patches were feature edges. */
   size_t n_corner, n_line;     /* Feature corners and curves; all are
                                   preserved. */
   double line_length[2];

@@ -36,8 +36,7 @@ static uint32_t patch_of(const struct vg_tris *w, size_t t,
   vg_sub(vg_tris_at(w, w->tri[t][1]), vg_tris_at(w, w->tri[t][0]), u);
   vg_sub(vg_tris_at(w, w->tri[t][2]), vg_tris_at(w, w->tri[t][0]), v);
   vg_cross(u, v, n);
-  if (!(vg_unit(n) > 0) || !(vg_ref_project(w->ref, x, n, &hint, y) < INFINITY))
-    vg_ref_nearest(w->ref, x, NULL, &hint, y);
+  vg_ref_nearest(w->ref, x, vg_unit(n) > 0 ? n : NULL, &hint, y);
   return patch[hint];
 }
 

@@ -119,7 +119,8 @@ static void areas(const struct vg_mesh *m, int after, double *area)
 
 static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
                         const struct vg_surface_sizes *sizes, int is_reference,
-                        struct vg_display *show, struct vg_error *err)
+                        int keeps_borders, struct vg_display *show,
+                        struct vg_error *err)
 {
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
 
@@ -127,6 +128,7 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
   o.field = sizes->field;
   o.h_max = vg_boundary_largest_edge(b, o.h_max);
   o.hard = hard;
+  o.keeps_borders = keeps_borders;
   o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;
   o.cap = sizes->cap;
@@ -179,7 +181,7 @@ static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
   struct vg_mesh made = VG_MESH_INIT;
   vg_status st;
 
-  VG_TRY(remesh(b, hard, sizes, has_defects, show, err));
+  VG_TRY(remesh(b, hard, sizes, has_defects, b->model.cad != NULL, show, err));
   if (has_defects || !b->model.cad ||
       (double)n_needle(&b->remeshing.report) <= MANY * (double)b->surface.n_tri)
     goto done;
@@ -187,7 +189,7 @@ static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
   first = b->remeshing.report;
   b->remeshing.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
   VG_TRY(vg_mesh_copy(&b->surface, given, err));
-  st = remesh(b, hard, sizes, 1, show, err);
+  st = remesh(b, hard, sizes, 1, first.keeps_borders, show, err);
   if (st < 0 && st != VG_ERR_GEOMETRY) goto done;
   if (st >= 0 && n_needle(&b->remeshing.report) < n_needle(&first)) goto done;
   st = VG_OK;

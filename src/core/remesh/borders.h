@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/remesh/borders.h: borders between patches that become feature edges,
+ * although the surface may be smooth across them. Private to core/remesh. */
+#ifndef VG_CORE_REMESH_BORDERS_H
+#define VG_CORE_REMESH_BORDERS_H
+
+#include <stdint.h>
+
+#include "core/mesh/mesh.h"
+
+/** Select the patches that keep their borders.
+ *
+ * Without a feature edge, a border follows the edges of the new triangles: it
+ * moves by about the edge length h, and the area of the patch changes by h times
+ * the length of its border. With a feature edge, triangles become as small as
+ * the patch is wide. Both matter for patches of which the width, twice the area
+ * over the length of the border, is not large compared with h.
+ *
+ *        wide patch             patch of width w < h        many strips of a
+ *     .--------------.         .----------------.           surface of
+ *     |              |         |________________|           revolution: free
+ *     |    kept      |           kept, triangles             below NARROW h
+ *     '--------------'           of size w
+ *
+ * @param size  largest edge h of the remeshed surface
+ * @param kept  [n_patch] set to 1 for patches that keep their borders; other
+ *              entries remain unchanged
+ *
+ * O(n_tri). VG_ERR_MEMORY. */
+vg_status vg_borders_keep(const struct vg_mesh *m, double size, uint8_t *kept,
+                          struct vg_error *err);
+
+#endif
