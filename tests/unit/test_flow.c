@@ -448,6 +448,52 @@ static void engine_faces_do_not_make_a_duct(void **state)
   assert_int_equal(vg_flow_judge(&s, 0, why), VG_FLOW_EITHER);
 }
 
+/* Give the triangles of a cube at x = side with |y| and |z| below 0.6 to a patch
+ * of their own. */
+static void imprint(struct vg_mesh *m, double side, const char *name)
+{
+  const uint32_t patch = patch_of(m, name, VG_BC_NONE);
+
+  for (size_t t = 0; t < m->n_tri; t++) {
+    int inside = 1;
+
+    for (int k = 0; k < 3; k++) {
+      const double *x = m->point[m->tri[t][k]];
+
+      inside &= fabs(x[0] - side) < 1e-9 && fabs(x[1]) < 0.6 &&
+                fabs(x[2]) < 0.6;
+    }
+    if (inside) m->tri_patch[t] = patch;
+  }
+}
+
+static void flush_openings_make_a_room(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct answer a;
+
+  (void)state;
+  add_cube(&m, 1, hull, NULL);
+  imprint(&m, -1, "inlet");
+  imprint(&m, 1, "outlet");
+  a = ask(&m);
+  is_kind(&a, VG_FLOW_INTERNAL);
+  add_cube(&m, 1, hull, NULL); /* both in one wall */
+  imprint(&m, 1, "inlet");
+  for (size_t t = 0; t < m.n_tri; t++) {
+    const double *x = m.point[m.tri[t][0]];
+
+    if (m.patch[m.tri_patch[t]].name[0] == 'i' && x[1] > 0.2)
+      m.tri_patch[t] = patch_of(&m, "outlet", VG_BC_NONE);
+  }
+  a = ask(&m);
+  is_kind(&a, VG_FLOW_INTERNAL);
+  add_cube(&m, 1, hull, NULL); /* a single one */
+  imprint(&m, 1, "outlet");
+  a = ask(&m);
+  is_refused(&a);
+}
+
 static void several_regions_are_refused(void **state)
 {
   const struct vg_flow_options all = { .repair = 1,
@@ -740,6 +786,7 @@ int main(void)
     cmocka_unit_test(ducts_are_internal),
     cmocka_unit_test(walls_with_bare_ends_are_refused),
     cmocka_unit_test(engine_faces_do_not_make_a_duct),
+    cmocka_unit_test(flush_openings_make_a_room),
     cmocka_unit_test(several_regions_are_refused),
     cmocka_unit_test(open_half_models_are_turned),
     cmocka_unit_test(a_hollow_half_model_loses_its_cavity),

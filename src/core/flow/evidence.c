@@ -137,6 +137,7 @@ static void add_patch(struct vg_flow_shell *s, const struct vg_flow_patch *p,
   if (!is_opening || (!p->has_condition && !p->is_flat)) return;
   s->n_opening++;
   s->n_opening_end += p->is_end != 0;
+  s->n_opening_flush += p->is_flush != 0;
   list_patch(s->openings, sizeof s->openings, named);
 }
 

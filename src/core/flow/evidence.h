@@ -21,6 +21,8 @@ struct vg_flow_patch {
   int is_used;       /* 1: the patch has triangles. */
   int is_flat;
   int is_end;
+  int is_flush; /* 1: flat, on the outermost plane of its shell, and the walls
+                   around it lie in the same plane. */
   uint32_t shell; /* Shell of its first triangle. */
   double area;
   double normal[3]; /* Sum of the normals of its triangles; its length is twice
@@ -51,6 +53,7 @@ struct vg_flow_shell {
                                condition, and flat ones by name. */
   size_t n_opening_end;     /* Those of n_opening that are flat ends of the
                                shell. */
+  size_t n_opening_flush;   /* Those of n_opening that are flush. */
   size_t n_symmetry_end;    /* Symmetry planes that are flat ends. */
   size_t n_plain_end;       /* Flat ends without condition and name. */
   char openings[120];       /* Text of the openings: "1 (inlet), 2 (outlet)". */

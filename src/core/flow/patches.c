@@ -12,6 +12,7 @@
 /* F1 */
 #define FLAT 1e-4  /* of the shell's length: deviation of a flat patch */
 #define STEEP 0.7  /* cosine between a wall and the plane of an end */
+#define LEVEL 1e-6 /* 1 - cosine between a flush opening and its wall */
 #define MOSTLY 0.7 /* least share of the border that meets it steeply */
 #define LARGE                                                                  \
   1e-3 /* of the total area: least area of an opening without name */
@@ -84,9 +85,10 @@ static void measure_flat(const struct vg_mesh *m,
                              p->plane - g.shell_lo <= FLAT * length);
 }
 
-/* Length of the border of a patch, and of its steep part. */
+/* Length of the border of a patch, of its steep part, and of the part where the
+ * wall continues the patch. */
 struct border {
-  double all, steep;
+  double all, steep, level;
 };
 
 static void add_border(const struct vg_mesh *m, size_t at, size_t adjacent,
@@ -94,17 +96,19 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t adjacent,
                        struct border *border)
 {
   const uint32_t own = m->tri_patch[at];
-  double n[3];
+  double n[3], cosine;
 
   if (!patch[own].is_end) return;
   normal_of(m, adjacent, n);
   border[own].all += length;
-  if (fabs(vg_dot(n, patch[own].normal)) <=
-      STEEP * vg_norm(n) * vg_norm(patch[own].normal))
-    border[own].steep += length;
+  cosine = vg_dot(n, patch[own].normal) /
+           (vg_norm(n) * vg_norm(patch[own].normal));
+  if (fabs(cosine) <= STEEP) border[own].steep += length;
+  if (cosine >= 1 - LEVEL) border[own].level += length;
 }
 
-/* Flat patches with steep borders are ends. */
+/* Flat patches on the outermost planes with steep borders are ends; those with
+ * level borders are flush. */
 static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
                            struct vg_error *err)
 {
@@ -127,9 +131,12 @@ static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
       add_border(m, s, t, length, patch, border);
       add_border(m, t, s, length, patch, border);
     }
-  for (size_t i = 0; i < m->n_patch; i++)
+  for (size_t i = 0; i < m->n_patch; i++) {
+    patch[i].is_flush = patch[i].is_end && border[i].all > 0 &&
+                        border[i].level >= MOSTLY * border[i].all;
     patch[i].is_end &= border[i].all > 0 &&
                        border[i].steep >= MOSTLY * border[i].all;
+  }
 done:
   vg_edges_release(&e);
   free(border);

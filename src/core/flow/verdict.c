@@ -31,7 +31,15 @@ static enum vg_flow_verdict by_openings(const struct vg_flow_shell *s,
              s->openings);
     return VG_FLOW_OUTER;
   }
-  if (!s->n_opening_end) {
+  if (n > 1 && s->n_opening_flush &&
+      s->n_opening_end + s->n_opening_flush == n) {
+    snprintf(why, VG_FLOW_TEXT,
+             "the inlets and outlets, patches %s, are on the outermost planes "
+             "of the shell, flush with its walls or flat ends",
+             s->openings);
+    return VG_FLOW_OUTER;
+  }
+  if (!s->n_opening_end && !s->n_opening_flush) {
     snprintf(why, VG_FLOW_TEXT,
              "the inlets and outlets, patches %s, lie inside the body's "
              "silhouette like engine faces",
@@ -39,10 +47,10 @@ static enum vg_flow_verdict by_openings(const struct vg_flow_shell *s,
     return VG_FLOW_BODY;
   }
   snprintf(why, VG_FLOW_TEXT,
-           "of the inlets and outlets, patches %s, %zu of %zu are flat ends "
-           "of the shell: a duct has two or more, all of them flat ends; a "
-           "body with engines has none at a flat end",
-           s->openings, s->n_opening_end, n);
+           "of the openings, patches %s, %zu of %zu are flat ends of the shell "
+           "or flush with its walls: a duct or a room has two or more, all of "
+           "them such; a body with engines has none",
+           s->openings, s->n_opening_end + s->n_opening_flush, n);
   return VG_FLOW_EITHER;
 }
 

@@ -15,9 +15,10 @@ enum vg_flow_verdict {
 /** Classify one shell. The first rule that applies decides:
  *
  *  1. a patch with a farfield condition or name: outer boundary;
- *  2. inlets and outlets: if there are at least two and all are flat ends:
- *     outer boundary (a duct); if all are inside the silhouette: body with
- *     engine faces; else either;
+ *  2. inlets and outlets: if there are at least two and all are flat ends, or
+ *     flush with walls on the outermost planes: outer boundary (a duct, a
+ *     room); if all are inside the silhouette: body with engine faces; else
+ *     either;
  *  3. triangles point inwards, and the format defines their side: outer
  *     boundary; but either, if the format has exceptions and every patch is a
  *     wall;
