@@ -391,7 +391,28 @@ static void closes_holes_but_not_half_bodies(void **state)
   cut_end(&m, 2, 1, 0.9);
   for (size_t i = 0; i < m.n_point; i++)
     m.point[i][2] += 0.5 * m.point[i][1] * m.point[i][1];
-  assert_int_equal(close_holes(&m, 0, &n), VG_ERR_GEOMETRY);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK); /* a curved rim */
+  assert_int_equal(n, 1);
+  check_closed(&m);
+  vg_mesh_release(&m);
+}
+
+/* A quarter of a ball: the rim lies in two planes, and each gets
+ * a cap of its own. */
+static void closes_a_rim_in_two_planes(void **state)
+{
+  struct vg_mesh m = ball(origin, 5, 0.1);
+  double quarter = -volume(&m) / 2;
+  size_t n;
+
+  (void)state;
+  cut_end(&m, 0, 1, 0);
+  assert_int_equal(close_holes(&m, -1, &n), VG_OK);
+  assert_int_equal(n, 2);
+  check_closed(&m);
+  assert_string_equal(m.patch[m.n_patch - 1].name, "cap_2");
+  quarter /= -volume(&m);
+  assert_true(quarter > 0.9 && quarter < 1.1);
   vg_mesh_release(&m);
 }
 
@@ -778,6 +799,7 @@ int main(void)
     cmocka_unit_test(completes_half_bodies),
     cmocka_unit_test(a_hole_is_not_a_symmetry_plane),
     cmocka_unit_test(closes_holes_but_not_half_bodies),
+    cmocka_unit_test(closes_a_rim_in_two_planes),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(adds_a_symmetry_plane_alone),
     cmocka_unit_test(refuses_half_bodies_it_cannot_complete),

@@ -448,8 +448,8 @@ static void engine_faces_do_not_make_a_duct(void **state)
   assert_int_equal(vg_flow_judge(&s, 0, why), VG_FLOW_EITHER);
 }
 
-/* Give the triangles of a cube at x = side with |y| and |z| below 0.6 to a patch
- * of their own. */
+/* Give the triangles of a cube at x = side with |y| and |z| below 0.6 to a
+ * patch of their own. */
 static void imprint(struct vg_mesh *m, double side, const char *name)
 {
   const uint32_t patch = patch_of(m, name, VG_BC_NONE);

@@ -185,6 +185,69 @@ static void keeps_fixed_borders(void **unused)
   }
 }
 
+/* Borders between patches are kept where the patches are wide enough: the
+ * opening in the side of a box keeps its area, also where it is smaller than the
+ * edges. */
+static void keeps_imprinted_openings(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint32_t n[3] = { 12, 12, 12 };
+  size_t n_tri[2];
+
+  (void)unused;
+  for (int keeps = 0; keeps < 2; keeps++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    double before, after;
+    size_t at;
+
+    shape_box(&m, size, n);
+    at = vg_mesh_add_patch(&m, 99, "fan");
+    for (size_t t = 0; t < m.n_tri; t++) {
+      int inside = 1;
+
+      for (int k = 0; k < 3; k++) {
+        const double *x = m.point[m.tri[t][k]];
+
+        inside &= x[2] < 1e-9 && fabs(x[0] - 0.5) < 0.1 &&
+                  fabs(x[1] - 0.5) < 0.1;
+      }
+      if (inside) m.tri_patch[t] = (uint32_t)at;
+    }
+    before = shape_area(&m, at);
+    o.h_max = 0.4;
+    o.keeps_borders = keeps;
+    remesh(&m, &o, NULL);
+    shape_expect_sound(&m, 0);
+    after = shape_area(&m, at);
+    if (keeps) assert_float_equal(after, before, 1e-9);
+    else assert_true(fabs(after / before - 1) > 0.1);
+    n_tri[keeps] = m.n_tri;
+    vg_mesh_release(&m);
+  }
+  assert_in_range(n_tri[1], n_tri[0], 5 * n_tri[0]);
+}
+
+/* A plate of two triangles per side: sizes are small at its rim only. With sizes
+ * interpolated between the corners it would have 4 / (0.43 * 0.003 ^ 2) = a
+ * million triangles on either side. */
+static void refines_large_plane_triangles(void **unused)
+{
+  const double size[3] = { 2, 2, 0.003 };
+  const uint32_t n[3] = { 1, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  o.h_max = 0.1;
+  remesh(&m, &o, NULL);
+  shape_expect_sound(&m, 0);
+  assert_in_range(m.n_tri, 20000, 300000);
+  assert_float_equal(shape_area(&m, 0), 2 * 0.003, 1e-9);
+  vg_mesh_release(&m);
+}
+
 /* A blunt edge 0.01 wide on a plate gets equally narrow triangles, not
  * needles. */
 static void follows_strips(void **unused)
@@ -779,6 +842,8 @@ int main(void)
     cmocka_unit_test(improves_sliver_triangles),
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_fixed_borders),
+    cmocka_unit_test(keeps_imprinted_openings),
+    cmocka_unit_test(refines_large_plane_triangles),
     cmocka_unit_test(follows_strips),
     cmocka_unit_test(closes_narrow_strips),
     cmocka_unit_test(given_accuracy_becomes_the_tolerance),

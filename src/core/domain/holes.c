@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: open edges are joined to rims. The rims of the cut of a half model
- * stay open; each other rim is closed by a plane patch of its own. */
+ * stay open; each other rim is closed by a patch of its own, or by two if it
+ * lies in two planes. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,10 +10,13 @@
 #include "base/memory.h"
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
+#include "core/domain/span.h"
 #include "core/domain/symmetry.h"
 #include "core/geometry/vector.h"
 
 #define HOLE_FLATNESS 0.05 /* S11 */
+#define ONE_PLANE 1e-3     /* S11: flatter rims are not divided */
+#define PART 0.2 /* S11: of a rim in two planes: least part in one of them */
 #define OPPOSITE                                                               \
   0.1 /* S11: of the extent: rims this near to an end belong to it */
 
@@ -156,18 +160,24 @@ static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
   return VG_OK;
 }
 
-static vg_status close_rim(struct holes *h, uint32_t k, uint32_t patch,
-                           const struct vg_size_function *law,
-                           struct vg_error *err)
+/* Close the loop of n points by a patch of its own: plane if the loop is nearly
+ * so, otherwise with the least area between its points. */
+static vg_status close_loop(struct holes *h, size_t n, const uint32_t *loop,
+                            const struct vg_size_function *law, size_t *n_cap,
+                            struct vg_error *err)
 {
   struct vg_border rim = VG_BORDER_INIT;
   struct vg_error inner = VG_ERROR_INIT;
-  const double *x = h->m.point[h->rim[k].first];
+  const double *x = h->m.point[loop[0]];
+  uint32_t patch = 0;
   vg_status st;
 
-  VG_TRY(list_edges(h, k, &rim, err));
+  VG_TRY(add_cap(h, ++*n_cap, &patch, err));
+  for (size_t i = 0; i < n; i++)
+    VG_TRY(vg_border_add(&rim, loop[i], loop[(i + 1) % n], err));
   st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t(*)[2])rim.edge, law,
                             HOLE_FLATNESS, patch, &inner);
+  if (st == VG_ERR_GEOMETRY) st = vg_span_rim(&h->m, n, loop, patch, &inner);
   if (st < 0)
     st = vg_fail(err, st,
                  "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
@@ -175,6 +185,153 @@ static vg_status close_rim(struct holes *h, uint32_t k, uint32_t patch,
                  x[0], x[1], x[2], rim.n, inner.text);
 done:
   vg_border_release(&rim);
+  return st;
+}
+
+/* Longest run of consecutive points of the loop in a plane normal to an axis at
+ * an end of the body: *first and *n_run. */
+static void find_run(const struct holes *h, size_t n, const uint32_t *loop,
+                     size_t *first, size_t *n_run)
+{
+  *n_run = 0;
+  for (int side = 0; side < 6; side++) {
+    const int axis = side / 2;
+    const double at = side % 2 ? h->hi[axis] : h->lo[axis];
+    size_t run = 0;
+
+    /* Twice around, so that a run may pass the first point. */
+    for (size_t i = 0; i < 2 * n; i++) {
+      if (fabs(h->m.point[loop[i % n]][axis] - at) > h->tolerance) run = 0;
+      else if (++run > *n_run && run <= n) {
+        *n_run = run;
+        *first = (i + 1 - run) % n;
+      }
+    }
+  }
+}
+
+/* Add points to the chord from point a to point b, `step` apart. */
+static vg_status add_chord(struct holes *h, uint32_t a, uint32_t b, double step,
+                           size_t *n, uint32_t *point, struct vg_error *err)
+{
+  const double length = vg_distance(h->m.point[a], h->m.point[b]);
+  const double n_piece = fmin(fmax(1, length / step), VG_SPAN_MOST / 3);
+  double(*list)[3];
+
+  *n = (size_t)n_piece - 1;
+  list = vg_realloc(h->m.point, h->m.n_point + *n, sizeof *list);
+  if (!list) return vg_fail_memory(err, "the cap of a rim");
+  h->m.point = list;
+  for (size_t i = 0; i < *n; i++) {
+    const double t = (double)(i + 1) / (double)(*n + 1);
+    const size_t at = h->m.n_point++;
+
+    for (int d = 0; d < 3; d++)
+      list[at][d] = list[a][d] + t * (list[b][d] - list[a][d]);
+    point[i] = (uint32_t)at;
+  }
+  return VG_OK;
+}
+
+/* A rim in two planes, such as that of half a hull without deck, is divided by
+ * the chord between both parts:
+ *
+ *      first o====================o last       deck: the other part, closed by
+ *             \ . . . chord . . ./             the reversed chord
+ *              \                /
+ *               '--------------'              run in the plane of symmetry
+ */
+static vg_status close_in_two(struct holes *h, size_t n, const uint32_t *loop,
+                              size_t first, size_t n_run,
+                              const struct vg_size_function *law, size_t *n_cap,
+                              struct vg_error *err)
+{
+  const size_t last = first + n_run - 1, n_most = n + VG_SPAN_MOST;
+  uint32_t *part = vg_alloc(2 * n_most, sizeof *part), *chord;
+  size_t n_chord = 0, at = 0;
+  double length = 0;
+  vg_status st;
+
+  if (!part) VG_TRY(vg_fail_memory(err, "the cap of a rim"));
+  chord = part + n_most;
+  for (size_t i = 0; i < n; i++)
+    length += vg_distance(h->m.point[loop[i]], h->m.point[loop[(i + 1) % n]]);
+  VG_TRY(add_chord(h, loop[last % n], loop[first], length / (double)n, &n_chord,
+                   chord, err));
+  for (size_t i = first; i <= last; i++) part[at++] = loop[i % n];
+  for (size_t i = 0; i < n_chord; i++) part[at++] = chord[i];
+  VG_TRY(close_loop(h, at, part, law, n_cap, err));
+  at = 0;
+  for (size_t i = last; i <= first + n; i++) part[at++] = loop[i % n];
+  for (size_t i = n_chord; i-- > 0;) part[at++] = chord[i];
+  VG_TRY(close_loop(h, at, part, law, n_cap, err));
+done:
+  free(part);
+  return st;
+}
+
+/* Is every point of the loop within `flatness` times its extent of a plane? */
+static int is_flat(const struct holes *h, size_t n, const uint32_t *loop,
+                   double flatness)
+{
+  double sum[3] = { 0, 0, 0 }, most = 0, extent = 0;
+  const double *o = h->m.point[loop[0]];
+
+  for (size_t i = 1; i + 1 < n; i++) {
+    double u[3], v[3], c[3];
+
+    vg_sub(h->m.point[loop[i]], o, u);
+    vg_sub(h->m.point[loop[i + 1]], o, v);
+    vg_cross(u, v, c);
+    for (int d = 0; d < 3; d++) sum[d] += c[d];
+    extent = fmax(extent, vg_norm(u));
+  }
+  if (!(vg_unit(sum) > 0)) return 0;
+  for (size_t i = 1; i < n; i++) {
+    double u[3];
+
+    vg_sub(h->m.point[loop[i]], o, u);
+    most = fmax(most, fabs(vg_dot(u, sum)));
+  }
+  return most <= flatness * extent;
+}
+
+/* Is the run a considerable part of the rim? */
+static int is_part(const struct holes *h, size_t n, const uint32_t *loop,
+                   size_t first, size_t n_run)
+{
+  double all = 0, run = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    const double length = vg_distance(h->m.point[loop[(first + i) % n]],
+                                      h->m.point[loop[(first + i + 1) % n]]);
+
+    all += length;
+    if (i + 1 < n_run) run += length;
+  }
+  return run > PART * all && run < (1 - PART) * all;
+}
+
+static vg_status close_rim(struct holes *h, uint32_t k,
+                           const struct vg_size_function *law, size_t *n_cap,
+                           struct vg_error *err)
+{
+  uint32_t p = h->rim[k].first, *loop = NULL;
+  size_t n = 0, cap = 0, first = 0, n_run = 0;
+  vg_status st = VG_OK;
+
+  do {
+    if (vg_reserve(&loop, &cap, n + 1, sizeof *loop))
+      VG_TRY(vg_fail_memory(err, "the cap of a rim"));
+    loop[n++] = p;
+    p = h->next[p];
+  } while (p != h->rim[k].first);
+  if (!is_flat(h, n, loop, ONE_PLANE)) find_run(h, n, loop, &first, &n_run);
+  if (n_run > 2 && n_run < n && is_part(h, n, loop, first, n_run))
+    st = close_in_two(h, n, loop, first, n_run, law, n_cap, err);
+  else st = close_loop(h, n, loop, law, n_cap, err);
+done:
+  free(loop);
   return st;
 }
 
@@ -214,7 +371,6 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
 
   struct holes h = { .n_loop = 0 };
   const struct vg_size_function law = vg_size_function_of(sizing);
-  uint32_t patch = 0;
   vg_status st;
 
   *n_hole = *n_tri = 0;
@@ -223,8 +379,7 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
   VG_TRY(keep_symmetry(&h, symmetry, err));
   for (uint32_t k = 0; k < h.n_loop; k++) {
     if (h.rim[k].stays) continue;
-    VG_TRY(add_cap(&h, ++*n_hole, &patch, err));
-    VG_TRY(close_rim(&h, k, patch, &law, err));
+    VG_TRY(close_rim(&h, k, &law, n_hole, err));
   }
   *n_tri = h.m.n_tri - surface->n_tri;
   vg_mesh_move(surface, &h.m);

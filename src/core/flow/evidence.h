@@ -21,8 +21,8 @@ struct vg_flow_patch {
   int is_used;       /* 1: the patch has triangles. */
   int is_flat;
   int is_end;
-  int is_flush; /* 1: flat, on the outermost plane of its shell, and the walls
-                   around it lie in the same plane. */
+  int is_flush;   /* 1: flat, on the outermost plane of its shell, and the walls
+                     around it lie in the same plane. */
   uint32_t shell; /* Shell of its first triangle. */
   double area;
   double normal[3]; /* Sum of the normals of its triangles; its length is twice

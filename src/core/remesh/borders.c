@@ -2,6 +2,7 @@
 #include "core/remesh/borders.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -9,10 +10,12 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 
-#define NARROW 0.05 /* S92: of the size: narrower patches do not keep borders */
-/* S92: of the edges that the surface has at its largest size: most edges along
- * the borders of one patch. */
-#define MOST 0.2
+/* S92 */
+#define NARROW 0.05 /* of the size: narrower patches do not keep borders */
+#define MOST                                                                   \
+  0.2 /* of the edges at the largest size: most edges along the border         \
+         of a patch, */
+#define FEW 1000 /* which may always be this many */
 
 struct extent {
   double area, border; /* Area, and length of the border to other patches. */
@@ -68,7 +71,7 @@ vg_status vg_borders_keep(const struct vg_mesh *m, double size, uint8_t *kept,
   for (size_t i = 0; i < m->n_patch; i++) {
     const double width = of[i].border > 0 ? 2 * of[i].area / of[i].border : 0;
     if (width >= NARROW * size &&
-        of[i].border / width <= MOST * whole / (size * size))
+        of[i].border / width <= fmax(FEW, MOST * whole / (size * size)))
       kept[i] = 1;
   }
 done:

@@ -11,10 +11,10 @@
 /** Select the patches that keep their borders.
  *
  * Without a feature edge, a border follows the edges of the new triangles: it
- * moves by about the edge length h, and the area of the patch changes by h times
- * the length of its border. With a feature edge, triangles become as small as
- * the patch is wide. Both matter for patches of which the width, twice the area
- * over the length of the border, is not large compared with h.
+ * moves by about the edge length h, and the area of the patch changes by h
+ * times the length of its border. With a feature edge, triangles become as
+ * small as the patch is wide. Both matter for patches of which the width, twice
+ * the area over the length of the border, is not large compared with h.
  *
  *        wide patch             patch of width w < h        many strips of a
  *     .--------------.         .----------------.           surface of

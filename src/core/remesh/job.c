@@ -241,10 +241,9 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  struct vg_curves_options c = {
-    o->feature_angle, j->jag,  j->whole->tri_patch, j->whole->patch,
-    o->hard,          j->kept, o->stretch,          NULL
-  };
+  struct vg_curves_options c = { o->feature_angle, j->jag,  j->whole->tri_patch,
+                                 j->whole->patch,  o->hard, j->kept,
+                                 o->stretch,       NULL };
   vg_status st;
 
   VG_TRY(find_lines(j, &c, err));

@@ -25,9 +25,9 @@
  * edge and of other edges. */
 #define LEAP 10.0
 #define LEAP_INSIDE 4.0
-#define CUTS 256  /* most pieces of a feature edge */
+#define CUTS 256    /* most pieces of a feature edge */
 #define PLANE 1e-12 /* 1 - cosine between the triangles of a plane face */
-#define ROUNDS 20 /* most bisections of another edge */
+#define ROUNDS 20   /* most bisections of another edge */
 #define MOST 200000 /* triangles above which other edges are not split */
 
 /* Ratio of the size that growth from the ends of edge h permits at its
@@ -87,8 +87,8 @@ static int is_plane(const struct vg_remesh_job *j, uint32_t t)
 }
 
 /* Must edge h inside a plane face be bisected? Only the longest edges of
- * triangles are, so that triangles keep their shape. On curved faces, new points
- * would have no curvature. */
+ * triangles are, so that triangles keep their shape. On curved faces, new
+ * points would have no curvature. */
 static int is_bisected(const struct vg_remesh_job *j, uint32_t h)
 {
   const uint32_t g = j->ref.mate[h];

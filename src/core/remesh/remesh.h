@@ -74,16 +74,16 @@ struct vg_remesh_options {
                                     is checked. */
   const uint8_t *hard;           /* [n_patch] 1: all borders of the patch are
                                     fixed; may be NULL. */
-  int keeps_borders;             /* 1: so are the borders of other patches, unless
-                                    they are so narrow that this takes many
-                                    triangles. */
-  const uint8_t *fixed;          /* [n_patch] 1: the triangles of the patch are
-                                    kept unchanged. Strips are then not closed,
-                                    and faults of the input not removed
-                                    (is_reference 0). May be NULL. */
-  int threads;                   /* 0: one per core. The result is bitwise
-                                    independent of it. */
-  struct vg_stop stop;           /* Polled before every change. */
+  int keeps_borders;    /* 1: so are the borders of other patches, unless
+                           they are so narrow that this takes many
+                           triangles. */
+  const uint8_t *fixed; /* [n_patch] 1: the triangles of the patch are
+                           kept unchanged. Strips are then not closed,
+                           and faults of the input not removed
+                           (is_reference 0). May be NULL. */
+  int threads;          /* 0: one per core. The result is bitwise
+                           independent of it. */
+  struct vg_stop stop;  /* Polled before every change. */
 };
 #define VG_REMESH_STRETCH 20
 #define VG_REMESH_OPTIONS_INIT                                                 \

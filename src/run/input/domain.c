@@ -152,12 +152,50 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
                  b->read->files.stem);
 }
 
+/* Whether --close-holes yes would give a closed surface without further
+ * defects. */
+static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
+                          int *works, struct vg_error *err)
+{
+  struct vg_surface_check_options o = vg_options_check(&b->read->settings);
+  struct vg_sizing_options options = vg_boundary_sizing(b);
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_sizing *sizing = NULL;
+  struct vg_mesh m = VG_MESH_INIT;
+  size_t n_hole, n_tri;
+  vg_status st;
+
+  *works = 0;
+  vg_display_update(show, "trying to close the rims", 0, 0);
+  options.threads = o.threads = b->threads;
+  o.external = -1;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_mesh_copy(&m, &b->surface, err));
+  VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
+                       b->read->settings.source, &m, &sizing, err));
+  st = vg_domain_close_holes(&m,
+                             vg_options_farfield(&b->read->settings).symmetry,
+                             sizing, &n_hole, &n_tri, err);
+  if (st == VG_ERR_GEOMETRY) st = VG_OK;
+  else if (st == VG_OK) {
+    VG_TRY(vg_surface_check(&m, &o, &r, err));
+    *works = r.n_defect <=
+             b->check.n_defect - b->check.count[VG_DEFECT_OPEN_EDGE];
+  }
+done:
+  vg_surface_report_release(&r);
+  vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+  return st;
+}
+
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
                                   struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
   char list[400], half[160] = "", remedy[120];
+  int works = 0;
   size_t n = 0;
   vg_status st;
 
@@ -185,9 +223,23 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
              "--half %c",
              "xyz"[rim[0].axis], rim[0].centre[rim[0].axis],
              "xyz"[rim[0].axis]);
+  st = try_caps(b, show, &works, err);
+  if (st < 0) {
+    free(rim);
+    return st;
+  }
+  if (!works) {
+    vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the surface is open: %zu rim%s (%s). Caps on the rims "
+                 "(--close-holes) would intersect or overlap the surface%s%s",
+                 b->read->files.stem, n, n > 1 ? "s" : "", list, half, remedy);
+    free(rim);
+    return st;
+  }
   st = vg_fail(err, VG_ERR_GEOMETRY,
                "%s: the surface is open: %zu rim%s (%s). --close-holes yes "
-               "closes each rim with a flat cap in a patch of its own "
+               "closes each rim with a cap in a patch of its own "
                "(cap_1%s%s)%s",
                b->read->files.stem, n, n > 1 ? "s" : "", list,
                n > 1 ? ", cap_2, ..." : "",

@@ -259,6 +259,36 @@ static void note_remeshing(struct vg_boundary *b)
           r->report.tolerance, outer);
 }
 
+/* Relative change of a patch's area above which it is reported. */
+#define AREA_CHANGE 0.01
+
+/* Patches that are narrower than the tolerance, or have borders that were not
+ * kept, change their areas. */
+static void note_areas(struct vg_boundary *b)
+{
+  const struct vg_remeshing *r = &b->remeshing;
+  size_t n = 0, at = 0;
+  double most = 0;
+
+  for (size_t i = 0; i < r->n_patch; i++) {
+    const double old = r->area[2 * i], change = r->area[2 * i + 1] / old - 1;
+
+    if (!(old > 0) || fabs(change) <= AREA_CHANGE) continue;
+    n++;
+    if (fabs(change) <= fabs(most)) continue;
+    most = change;
+    at = i;
+  }
+  if (n)
+    vg_note(b->notes,
+            "remeshing changed the area of %zu patch%s by more than 1 %%, that "
+            "of patch %d by %.3g %%: these patches are narrower than the "
+            "tolerance (surface_tolerance), or so narrow compared with the "
+            "edges that their borders were not preserved (column hard of the "
+            "table patches preserves them)",
+            n, n > 1 ? "es" : "", (int)b->surface.patch[at].id, 100 * most);
+}
+
 /* Part of surface_size below which the longest edge is reported. */
 #define SHORT 0.5
 
@@ -312,6 +342,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   areas(&b->surface, 1, r->area);
   note_faults(b);
   note_remeshing(b);
+  note_areas(b);
   note_size(b);
 done:
   vg_surface_sizes_release(&sizes);
