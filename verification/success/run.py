@@ -139,7 +139,8 @@ def attempt(row, path, remedy, folder, asked):
     command = [asked.vanguard, "mesh", "-p", path, "--y-plus", "30",
                "--reynolds", "5e6", "--reference-length", "%g" % row["length"],
                "--write", "lb8.ugrid", "--out", out, "--quiet",
-               *row["options"], *remedy]
+               *(o.replace("{data}", asked.data) for o in row["options"]),
+               *remedy]
     result = run(command, asked.cpu)
     result["remedy"] = " ".join(remedy)
     if result["status"] == 0:

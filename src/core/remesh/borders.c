@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 
-/* S92 */
+/* S80 */
 #define NARROW 0.05 /* of the size: narrower patches do not keep borders */
 #define MOST                                                                   \
   0.2 /* of the edges at the largest size: most edges along the border         \

@@ -324,27 +324,79 @@ void collect(const Words &words, Model &model)
   }
 }
 
+/* Entities of a list of checks that failed: their number and the first of
+ * them. */
+struct Failed {
+  size_t n = 0;
+  std::string first;
+
+  Failed(Interface_CheckIterator all,
+         const Handle(Interface_InterfaceModel) & model)
+  {
+    for (all.Start(); all.More(); all.Next()) {
+      if (!all.Value()->HasFailed() || all.Number() <= 0) continue;
+      Handle(Standard_Transient) entity = model->Value(all.Number());
+      Handle(IGESData_IGESEntity)
+        iges = Handle(IGESData_IGESEntity)::DownCast(entity);
+
+      if (!n++)
+        first = format("%s%s: %s", model->StringLabel(entity)->ToCString(),
+                       iges.IsNull()
+                         ? ""
+                         : format(" (type %d)", iges->TypeNumber()).c_str(),
+                       without_format(all.Value()->CFail(1)).c_str());
+    }
+  }
+
+private:
+  /* Open CASCADE leaves format specifications in some messages. */
+  static std::string without_format(std::string text)
+  {
+    for (size_t at; (at = text.find("%d ")) != std::string::npos;)
+      text.erase(at, 3);
+    return text;
+  }
+};
+
+Interface_CheckIterator checks_of_transfer(const Handle(XSControl_WorkSession) &
+                                           session)
+{
+  return session->TransferReader()->TransientProcess()->CheckList(
+    Standard_True);
+}
+
 /* Report entities that Open CASCADE could not convert to shapes. */
 void note_failures(const Handle(XSControl_WorkSession) & session,
                    const Talk &talk)
 {
-  Interface_CheckIterator all =
-    session->TransferReader()->TransientProcess()->CheckList(Standard_True);
-  Handle(Interface_InterfaceModel) model = session->Model();
-  std::string first;
-  size_t n = 0;
+  const Failed failed(checks_of_transfer(session), session->Model());
 
-  for (all.Start(); all.More(); all.Next()) {
-    if (!all.Value()->HasFailed() || all.Number() <= 0) continue;
-    if (!n++)
-      first = format(
-        "%s: %s", model->StringLabel(model->Value(all.Number()))->ToCString(),
-        all.Value()->CFail(1));
-  }
-  if (n)
+  if (failed.n)
     talk.note(format("%zu entities of the file could not be translated, the "
                      "first is %.300s",
-                     n, first.c_str()));
+                     failed.n, failed.first.c_str()));
+}
+
+/* Nothing of the file could be converted: name the entity that is damaged, or
+ * the first one that has no shape. */
+Failure not_converted(const Handle(XSControl_WorkSession) & session,
+                      const char *kind)
+{
+  Failed failed(session->ModelCheckList(), session->Model());
+
+  if (!failed.n) failed = Failed(checks_of_transfer(session), session->Model());
+  return Failure{
+    VG_ERR_INPUT,
+    format("this %s file could not be converted to a shape%s", kind,
+           failed.n
+             ? format(": %zu of its entities %s wrong, the first is %.300s; "
+                      "export it again",
+                      failed.n, failed.n == 1 ? "is" : "are",
+                      failed.first.c_str())
+                 .c_str()
+             : ": it has no faces or solids that Open CASCADE knows; export "
+               "trimmed surfaces or solids")
+  };
 }
 
 void require(IFSelect_ReturnStatus got, const char *kind)
@@ -432,9 +484,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
     "xstep.cascade.unit",
     choose_unit(ask, given, called.c_str(), model, talk).open_cascade);
   talk.stage("translating its entities");
-  if (!reader.Transfer(doc))
-    throw Failure{ VG_ERR_INPUT, "this STEP file could not be converted to "
-                                 "a shape" };
+  if (!reader.Transfer(doc)) throw not_converted(reader.Reader().WS(), "STEP");
   note_failures(reader.Reader().WS(), talk);
   collect(Words(doc, reader.Reader().WS()), model);
 }
@@ -463,9 +513,7 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
     file->ChangeGlobalSection().SetCascadeUnit(to.mm);
   }
   talk.stage("translating its entities");
-  if (!reader.Transfer(doc))
-    throw Failure{ VG_ERR_INPUT, "this IGES file could not be converted to "
-                                 "a shape" };
+  if (!reader.Transfer(doc)) throw not_converted(reader.WS(), "IGES");
   note_failures(reader.WS(), talk);
   collect(Words(doc, reader.WS()), model);
 }
