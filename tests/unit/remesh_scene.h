@@ -17,9 +17,10 @@ struct scene {
 static inline void scene_set(struct scene *s, double tolerance, double size)
 {
   struct vg_error err = VG_ERROR_INIT;
-  const struct vg_curves_options o = { 40,         tolerance, s->m.tri_patch,
-                                       s->m.patch, NULL,      NULL,
-                                       NULL };
+  const struct vg_curves_options o = { .angle = 40,
+                                       .tolerance = tolerance,
+                                       .tri_patch = s->m.tri_patch,
+                                       .patch = s->m.patch };
 
   if (vg_ref_build(&s->ref, &s->m, NULL, &err) < 0) fail_msg("%s", err.text);
   if (vg_curves_find(&s->curves, &s->ref, &o, &err) < 0)
