@@ -241,9 +241,13 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  struct vg_curves_options c = { o->feature_angle, j->jag,  j->whole->tri_patch,
-                                 j->whole->patch,  o->hard, j->kept,
-                                 o->stretch,       NULL };
+  struct vg_curves_options c = { .angle = o->feature_angle,
+                                 .tolerance = j->jag,
+                                 .tri_patch = j->whole->tri_patch,
+                                 .patch = j->whole->patch,
+                                 .hard = o->hard,
+                                 .kept = j->kept,
+                                 .stretch = o->stretch };
   vg_status st;
 
   VG_TRY(find_lines(j, &c, err));
@@ -304,14 +308,11 @@ done:
 static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  const struct vg_curves_options lines = { o->feature_angle,
-                                           j->jag,
-                                           j->whole->tri_patch,
-                                           j->whole->patch,
-                                           o->hard,
-                                           NULL,
-                                           NULL,
-                                           NULL };
+  const struct vg_curves_options lines = { .angle = o->feature_angle,
+                                           .tolerance = j->jag,
+                                           .tri_patch = j->whole->tri_patch,
+                                           .patch = j->whole->patch,
+                                           .hard = o->hard };
   struct vg_clean c = VG_CLEAN_INIT;
   double *cap = NULL;
   vg_status st;
