@@ -185,8 +185,8 @@ static void keeps_fixed_borders(void **unused)
   }
 }
 
-/* Borders between patches are kept where the patches are wide enough: the
- * opening in the side of a box keeps its area, also where it is smaller than the
+/* Borders between patches are kept where the patches are wide enough. The
+ * opening in the side of a box keeps its area, although it is smaller than the
  * edges. */
 static void keeps_imprinted_openings(void **unused)
 {
@@ -228,9 +228,9 @@ static void keeps_imprinted_openings(void **unused)
   assert_in_range(n_tri[1], n_tri[0], 5 * n_tri[0]);
 }
 
-/* A plate of two triangles per side: sizes are small at its rim only. With sizes
- * interpolated between the corners it would have 4 / (0.43 * 0.003 ^ 2) = a
- * million triangles on either side. */
+/* The sizes of a plate with two triangles per side are small at its rim only.
+ * Interpolated between the corners, they would give 4 / (0.43 * 0.003 ^ 2), a
+ * million triangles, on either side. */
 static void refines_large_plane_triangles(void **unused)
 {
   const double size[3] = { 2, 2, 0.003 };

@@ -61,21 +61,6 @@ vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err);
 vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err);
 
-/** Replace the working surface by m, and the options per point and per triangle
- * by arrays for m. VG_ERR_MEMORY.
- *
- * @param tri_from   [n_tri] numbers in the previous surface
- * @param half_from  [3 n_tri] the same; VG_REF_NONE: new. NULL: as tri_from
- * @param cap        options.cap for m; set to NULL */
-vg_status vg_job_adopt(struct vg_remesh_job *j, struct vg_mesh *m,
-                       const uint32_t *tri_from, const uint32_t *half_from,
-                       double **cap, struct vg_error *err);
-
-/** Split edges at the ends of which the sizes are much smaller than growth
- * permits at their midpoints, and build the reference again (long_edges.c).
- * VG_ERR_MEMORY, VG_ERR_STOPPED. */
-vg_status vg_job_cut_edges(struct vg_remesh_job *j, struct vg_error *err);
-
 /** Start again from the given surface m and options o. With no_cuts feature
  * edges are not split. */
 vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* core/remesh/borders.h: borders between patches that become feature edges,
- * although the surface may be smooth across them. Private to core/remesh. */
-#ifndef VG_CORE_REMESH_BORDERS_H
-#define VG_CORE_REMESH_BORDERS_H
+/* core/surface/borders.h: borders between patches that become feature edges of
+ * a remeshed surface, although it may be smooth across them. */
+#ifndef VG_CORE_SURFACE_BORDERS_H
+#define VG_CORE_SURFACE_BORDERS_H
 
 #include <stdint.h>
 

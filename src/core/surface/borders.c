@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "core/remesh/borders.h"
+#include "core/surface/borders.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "core/geometry/triangles.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 
