@@ -93,6 +93,8 @@ def run(command, cpu):
 
 
 def message_of(text):
+    """Last message of the program, without the folder of the file."""
+    text = re.sub(r"/\S*/(?=[^/\s]+)", "", text)
     lines = [line for line in text.splitlines() if line.startswith("vanguard: ")]
     return (lines[-1][len("vanguard: "):] if lines
             else " ".join(text[-200:].split()))
