@@ -18,9 +18,9 @@ usage: verification/success/run.py --data DIR [--vanguard PROGRAM]
 Each file of files.tsv is given to `vanguard mesh -p FILE --y-plus 30
 --reynolds 5e6 --reference-length L --write lb8.ugrid`, L being the longest side
 of its bounding box. If the run is refused, the options that its message names
-are tried, one at a time. The table states what came of it. Exit status 1 if a
-file gives a mesh of a wrong domain, a mesh that is not valid, or a patch that
-changes its area by more than 1 %; failures with a message only count."""
+are tried, one at a time. The table has the verdict of each file. Exit status 1 if
+a file gives a mesh of a wrong domain, a mesh that is not valid, or a patch that
+changes its area by more than 1 %. Refusals are counted but are no failures."""
 import argparse
 import concurrent.futures
 import gzip
@@ -41,7 +41,6 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 REMEDY = re.compile(r"--(close-holes yes|half [xyz]|flow (?:internal|external)"
                     r"|wrap [0-9.e+-]*[0-9]|cad-solids only)")
 AREA_CHANGE = 1.0   # %, largest change of a patch's area
-MEMORY_GB = 8       # address space of a run
 
 
 def read_list():
@@ -220,7 +219,8 @@ def summary(results):
     by_default, by_remedy = count.get("default", 0), count.get("remedy", 0)
     n = max(len(bodies), 1)
     return ("%d files that bound a body or a domain: %d (%.0f %%) by the "
-            "default command, %d (%.0f %%) with one remedy more or without, "
+            "default command, %d (%.0f %%) by it or with one option that the "
+            "message names, "
             "%d wrong; %d of %d others refused as expected" % (
                 len(bodies), by_default, 100 * by_default / n,
                 by_default + by_remedy, 100 * (by_default + by_remedy) / n,

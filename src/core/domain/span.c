@@ -18,15 +18,9 @@ struct span {
   uint32_t *third; /* [n * n] */
 };
 
-static double triangle_area(const struct span *s, size_t i, size_t j, size_t k)
+static double area_of(const struct span *s, size_t i, size_t j, size_t k)
 {
-  const double *a = s->x[s->rim[i]];
-  double u[3], v[3], n[3];
-
-  vg_sub(s->x[s->rim[j]], a, u);
-  vg_sub(s->x[s->rim[k]], a, v);
-  vg_cross(u, v, n);
-  return vg_norm(n) / 2;
+  return vg_triangle_area(s->x[s->rim[i]], s->x[s->rim[j]], s->x[s->rim[k]]);
 }
 
 static void find_least(struct span *s)
@@ -38,7 +32,7 @@ static void find_least(struct span *s)
 
       for (size_t j = i + 1; j < k; j++) {
         const double area = s->area[i * s->n + j] + s->area[j * s->n + k] +
-                            triangle_area(s, i, j, k);
+                            area_of(s, i, j, k);
 
         if (!(area < best)) continue;
         best = area;

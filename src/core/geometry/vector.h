@@ -74,6 +74,18 @@ static inline double vg_distance(const double a[3], const double b[3])
   return sqrt(vg_distance2(a, b));
 }
 
+/** Area of the triangle a b c. */
+static inline double vg_triangle_area(const double a[3], const double b[3],
+                                      const double c[3])
+{
+  double u[3], v[3], n[3];
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_cross(u, v, n);
+  return vg_norm(n) / 2;
+}
+
 /** Six times the volume of the tetrahedron o, a, b, c. */
 static inline double vg_det(const double o[3], const double a[3],
                             const double b[3], const double c[3])

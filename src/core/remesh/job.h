@@ -48,7 +48,7 @@ struct vg_remesh_job {
                         and the last attempt. */
   int is_cut;        /* Long feature edges were split. */
   int no_cuts;       /* Long feature edges must not be split. */
-  int frees_borders; /* Borders between patches must not be kept. */
+  int frees_borders; /* A restart does not keep borders between patches. */
   int looks;         /* Measure only: the surface is not changed. */
 };
 

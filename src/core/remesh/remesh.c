@@ -561,42 +561,18 @@ done:
   return st;
 }
 
-/* The first attempt, in which long feature edges are split. */
-static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
-                              const struct vg_remesh_options *o,
-                              struct vg_mesh *out, int *sound,
-                              struct vg_error *err)
+/* Attempt to remesh without making intersecting triangles smaller. If the
+ * result is not sound or has many poor triangles, start again from m. */
+static vg_status try_once(struct vg_remesh_job *j, const struct vg_mesh *m,
+                          const struct vg_remesh_options *o, int no_cuts,
+                          struct vg_mesh *out, int *sound, struct vg_error *err)
 {
   const struct attempt once = { 1, 0, 0 };
-  vg_status st = VG_OK;
+  vg_status st;
 
-  if (!j->is_cut) return VG_OK;
-  VG_TRY(make(j, out, &once, sound, err));
-  /* Larger sizes at midpoints may have caused intersections, or may prevent
-   * needles next to a sharp edge of zero thickness from being split. */
-  if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
-  if (!*sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
-done:
-  return st;
-}
-
-/* An attempt in which the borders between patches are feature edges. If it
- * fails, they are not. */
-static vg_status begin_with_borders(struct vg_remesh_job *j,
-                                    const struct vg_mesh *m,
-                                    const struct vg_remesh_options *o,
-                                    struct vg_mesh *out, int *sound,
-                                    struct vg_error *err)
-{
-  const struct attempt once = { 1, 0, 0 };
-  vg_status st = VG_OK;
-
-  if (!j->kept) return VG_OK;
   VG_TRY(make(j, out, &once, sound, err));
   if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
-  if (*sound) goto done;
-  j->frees_borders = 1;
-  VG_TRY(vg_job_restart(j, m, o, 0, err));
+  if (!*sound) VG_TRY(vg_job_restart(j, m, o, no_cuts, err));
 done:
   return st;
 }
@@ -609,10 +585,15 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   const int hopeless = j->r.n_crossing[1] > 0;
   size_t left = 0;
   int sound = 0;
-  vg_status st;
+  vg_status st = VG_OK;
 
-  VG_TRY(begin_with_borders(j, m, o, out, &sound, err));
-  if (!sound) VG_TRY(begin_simply(j, m, o, out, &sound, err));
+  if (j->kept) { /* with the borders between patches as feature edges */
+    j->frees_borders = 1;
+    VG_TRY(try_once(j, m, o, 0, out, &sound, err));
+  }
+  /* Larger sizes at midpoints of long feature edges may cause intersections, or
+   * prevent needles next to a sharp edge of zero thickness from being split. */
+  if (!sound && j->is_cut) VG_TRY(try_once(j, m, o, 1, out, &sound, err));
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
                                !j->strips.n && round == rounds ? 1 : 0 };

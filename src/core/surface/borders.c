@@ -22,12 +22,8 @@ struct extent {
 
 static double area_of(const struct vg_mesh *m, size_t t)
 {
-  double u[3], v[3], n[3];
-
-  vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
-  vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
-  vg_cross(u, v, n);
-  return vg_norm(n) / 2;
+  return vg_triangle_area(m->point[m->tri[t][0]], m->point[m->tri[t][1]],
+                          m->point[m->tri[t][2]]);
 }
 
 static void measure(const struct vg_mesh *m, const struct vg_edges *e,

@@ -216,8 +216,9 @@ private:
     size_t i, j;
   };
   struct Votes {
-    size_t two = 0, other = 0; /* places of the rim with two other faces */
-    std::vector<size_t> near;  /* pairs that share edges with this one */
+    size_t two = 0, other = 0; /* edges with two other faces; with another
+                                  number of them */
+    std::vector<size_t> near;  /* faces of other pairs at these edges */
 
     bool is_wall() const
     {
@@ -267,7 +268,7 @@ private:
     const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(at);
     Bnd_Box around;
     std::set<size_t> faces;
-    bool is_inside = false;
+    const size_t n_near = out.near.size();
 
     around.Add(at);
     around.Enlarge(near);
@@ -275,15 +276,14 @@ private:
       if (e.face == p.i || e.face == p.j || e.box.IsOut(around)) continue;
       BRepExtrema_DistShapeShape to(vertex, e.edge);
       if (!to.IsDone() || to.Value() > near) continue;
-      if (!partner_[e.face]) faces.insert(e.face);
-      else is_inside = true;
       if (partner_[e.face]) out.near.push_back(e.face);
+      else faces.insert(e.face);
     }
-    if (is_inside && faces.empty()) return; /* between two pairs */
+    if (faces.empty() && out.near.size() > n_near) return; /* between pairs */
     ++(faces.size() == 2 ? out.two : out.other);
   }
 
-  /* Pairs that share edges form one wall or none. */
+  /* Pairs that share edges are one wall, or copies of one surface. */
   void spread(std::vector<Votes> &votes) const
   {
     std::vector<size_t> of(model_.faces.size(), SIZE_MAX), todo;

@@ -158,24 +158,18 @@ static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
                           int *works, struct vg_error *err)
 {
   struct vg_surface_check_options o = vg_options_check(&b->read->settings);
-  struct vg_sizing_options options = vg_boundary_sizing(b);
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  struct vg_sizing *sizing = NULL;
   struct vg_mesh m = VG_MESH_INIT;
   size_t n_hole, n_tri;
   vg_status st;
 
   *works = 0;
   vg_display_update(show, "trying to close the rims", 0, 0);
-  options.threads = o.threads = b->threads;
+  o.threads = b->threads;
   o.external = -1;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_mesh_copy(&m, &b->surface, err));
-  VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
-                       b->read->settings.source, &m, &sizing, err));
-  st = vg_domain_close_holes(&m,
-                             vg_options_farfield(&b->read->settings).symmetry,
-                             sizing, &n_hole, &n_tri, err);
+  st = vg_boundary_add_caps(b, &m, &n_hole, &n_tri, err);
   if (st == VG_ERR_GEOMETRY) st = VG_OK;
   else if (st == VG_OK) {
     VG_TRY(vg_surface_check(&m, &o, &r, err));
@@ -184,7 +178,6 @@ static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
   }
 done:
   vg_surface_report_release(&r);
-  vg_sizing_free(sizing);
   vg_mesh_release(&m);
   return st;
 }

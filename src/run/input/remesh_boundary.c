@@ -107,14 +107,9 @@ static vg_status hard_patches(const struct vg_boundary *b, uint8_t **hard,
 
 static void areas(const struct vg_mesh *m, int after, double *area)
 {
-  for (size_t t = 0; t < m->n_tri; t++) {
-    double u[3], v[3], n[3];
-
-    vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
-    vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
-    vg_cross(u, v, n);
-    area[2 * m->tri_patch[t] + (size_t)after] += vg_norm(n) / 2;
-  }
+  for (size_t t = 0; t < m->n_tri; t++)
+    area[2 * m->tri_patch[t] + (size_t)after] += vg_triangle_area(
+      m->point[m->tri[t][0]], m->point[m->tri[t][1]], m->point[m->tri[t][2]]);
 }
 
 static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
@@ -282,10 +277,10 @@ static void note_areas(struct vg_boundary *b)
   if (n)
     vg_note(b->notes,
             "remeshing changed the area of %zu patch%s by more than 1 %%, that "
-            "of patch %d by %.3g %%: these patches are narrower than the "
-            "tolerance (surface_tolerance), or so narrow compared with the "
-            "edges that their borders were not preserved (column hard of the "
-            "table patches preserves them)",
+            "of patch %d by %.3g %%: the borders of a patch move if it is "
+            "narrower than the tolerance (surface_tolerance) or very narrow "
+            "compared with the edges, or if triangles along the borders would "
+            "intersect (column hard of the table patches preserves them)",
             n, n > 1 ? "es" : "", (int)b->surface.patch[at].id, 100 * most);
 }
 

@@ -205,20 +205,32 @@ struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b)
   return vg_options_sizing(&b->read->settings, b->map);
 }
 
-static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
+vg_status vg_boundary_add_caps(const struct vg_boundary *b, struct vg_mesh *m,
+                               size_t *n_hole, size_t *n_tri,
+                               struct vg_error *err)
 {
   struct vg_sizing_options options = vg_boundary_sizing(b);
   struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  options.threads = b->threads;
+  VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
+                       b->read->settings.source, m, &sizing, err));
+  VG_TRY(vg_domain_close_holes(m,
+                               vg_options_farfield(&b->read->settings).symmetry,
+                               sizing, n_hole, n_tri, err));
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
+{
   size_t n_hole, n_tri;
   vg_status st;
 
   VG_TRY(vg_boundary_refuse_plane(b, err));
-  options.threads = b->threads;
-  VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
-                       b->read->settings.source, &b->surface, &sizing, err));
-  VG_TRY(vg_domain_close_holes(&b->surface,
-                               vg_options_farfield(&b->read->settings).symmetry,
-                               sizing, &n_hole, &n_tri, err));
+  VG_TRY(vg_boundary_add_caps(b, &b->surface, &n_hole, &n_tri, err));
   if (n_hole)
     vg_note(b->notes,
             "holes of the surface closed (close_holes): %zu, with %zu "
@@ -226,7 +238,6 @@ static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
             n_hole, n_tri, (int)b->surface.patch[b->n_given_patch].id,
             (int)b->surface.patch[b->surface.n_patch - 1].id, n_hole);
 done:
-  vg_sizing_free(sizing);
   return st;
 }
 

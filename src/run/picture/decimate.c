@@ -112,12 +112,8 @@ static void keep_triangles(const struct vg_mesh *m, const struct cubes *q,
 
 static double area_of(const struct vg_mesh *m, size_t t)
 {
-  double a[3], b[3], cross[3];
-
-  vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], a);
-  vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], b);
-  vg_cross(a, b, cross);
-  return vg_norm(cross) / 2;
+  return vg_triangle_area(m->point[m->tri[t][0]], m->point[m->tri[t][1]],
+                          m->point[m->tri[t][2]]);
 }
 
 /* Estimated number of triangles that a lattice leaves: those larger than its
