@@ -93,6 +93,37 @@ static void edges_go_across_strips(void **unused)
   assert_in_range(n_tri[1], 2400, 7200);
 }
 
+/* The edges of a plate stay, although they are thinner than the tolerance;
+ * stretched triangles along them keep the surface small. Much thinner ones are
+ * closed. */
+static void keeps_thin_edges(void **unused)
+{
+  const uint32_t n[3] = { 1, 1, 1 };
+  size_t n_tri[2];
+
+  (void)unused;
+  for (int i = 0; i < 3; i++) {
+    const double size[3] = { 1, 1, (const double[]){ 3e-4, 5e-5, 5e-6 }[i] };
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+
+    shape_box(&m, size, n);
+    remesh(&m, &o, &r);
+    shape_expect_sound(&m, 0);
+    assert_float_equal(r.tolerance, 1e-4, 1e-12);
+    for (uint32_t p = 0; p < 6 && i < 2; p++)
+      assert_float_equal(shape_area(&m, p), p < 4 ? size[2] : 1,
+                         1e-6 * size[2]);
+    assert_int_equal(r.n_closed > 0, i == 2);
+    if (i < 2) n_tri[i] = r.n_tri[1];
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+  }
+  assert_in_range(n_tri[0], 50000, 400000);
+  assert_true(n_tri[1] < n_tri[0]);
+}
+
 /* Needles of 1 : 60 on a box become well-shaped triangles; its edges stay. */
 static void improves_sliver_triangles(void **unused)
 {
@@ -839,6 +870,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(leaves_out_false_ridges),
     cmocka_unit_test(edges_go_across_strips),
+    cmocka_unit_test(keeps_thin_edges),
     cmocka_unit_test(improves_sliver_triangles),
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_fixed_borders),

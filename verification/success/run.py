@@ -145,7 +145,8 @@ def attempt(row, path, remedy, folder, asked):
     result = run(command, asked.cpu)
     result["remedy"] = " ".join(remedy)
     if result["status"] == 0:
-        stem = os.path.join(out, os.path.basename(path).rsplit(".", 1)[0])
+        name, = (n for n in os.listdir(out) if n.endswith(".report.json"))
+        stem = os.path.join(out, name[:-len(".report.json")])
         with open(stem + ".report.json", encoding="utf-8") as report:
             result.update(zip(("figures", "wrong"),
                               judge(json.load(report),

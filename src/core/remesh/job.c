@@ -215,10 +215,13 @@ static vg_status close_strips(struct vg_remesh_job *j,
 {
   vg_status st;
 
-  VG_TRY(vg_strips_find(&j->ref, &j->curves, j->given,
-                        &(struct vg_strips_options){ j->r.tolerance,
-                                                     j->o->across, c },
-                        &j->strips, err));
+  VG_TRY(
+    vg_strips_find(&j->ref, &j->curves, j->given,
+                   &(struct vg_strips_options){ .tolerance = j->r.tolerance,
+                                                .closes_edges = j->closes_edges,
+                                                .across = j->o->across,
+                                                .lines = c },
+                   &j->strips, err));
   if (!j->strips.n) goto done;
   VG_TRY(extend_caps(j, err));
   VG_TRY(extend_stretch(j, err));
@@ -233,12 +236,30 @@ done:
   return st;
 }
 
+/* Stretch the edges along thin strips. */
+static vg_status stretch_strips(struct vg_remesh_job *j, struct vg_error *err)
+{
+  const size_t n = 3 * j->given->n_tri;
+  const double *by = j->stretch ? j->stretch : j->o->stretch;
+
+  j->along = vg_calloc(n, sizeof *j->along);
+  if (!j->along) return vg_fail_memory(err, "the stretched feature curves");
+  if (by) memcpy(j->along, by, n * sizeof *by);
+  if (vg_strips_stretch(&j->ref, &j->curves, j->o->across, j->given->tri_patch,
+                        j->along))
+    return VG_OK;
+  free(j->along);
+  j->along = NULL;
+  return VG_OK;
+}
+
 void vg_job_release_reference(struct vg_remesh_job *j)
 {
   free(j->strip_cap);
   free(j->point_cap);
   free(j->stretch);
-  j->strip_cap = j->point_cap = j->stretch = NULL;
+  free(j->along);
+  j->strip_cap = j->point_cap = j->stretch = j->along = NULL;
   vg_curves_release(&j->curves);
   vg_ref_release(&j->ref);
   vg_strips_release(&j->strips);
@@ -262,6 +283,7 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
   VG_TRY(find_lines(j, &c, err));
   if (closes) VG_TRY(close_strips(j, &c, err));
   VG_TRY(find_sizes(j, err));
+  if (!o->field && !j->closes_edges) VG_TRY(stretch_strips(j, err));
   if (j->looks) goto done;
   VG_TRY(check_number(j, err));
   VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,

@@ -30,6 +30,8 @@ struct vg_remesh_job {
   double *point_cap;        /* [n_point] Largest size for strips.mesh; may be
                                NULL. */
   double *stretch;          /* [3 n_tri] options.stretch for strips.mesh. */
+  double *along;            /* [3 given->n_tri] The same, with the edges along
+                               thin strips; NULL: there are none. */
   double jag;               /* Tolerance of feature curves; independent of the
                                scale. */
   double far;               /* Sizes above this occur on an outer boundary only;
@@ -49,6 +51,7 @@ struct vg_remesh_job {
   int is_cut;        /* Long feature edges were split. */
   int no_cuts;       /* Long feature edges must not be split. */
   int frees_borders; /* A restart does not keep borders between patches. */
+  int closes_edges;  /* A restart closes all strips below the tolerance. */
   int looks;         /* Measure only: the surface is not changed. */
 };
 

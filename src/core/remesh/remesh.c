@@ -450,7 +450,7 @@ static vg_status swap_flat(struct vg_remesh_job *j, struct vg_mesh *m,
   size_t n = 0;
   vg_status st;
 
-  if (j->stretch || j->o->stretch || j->o->field) return VG_OK;
+  if (j->along || j->stretch || j->o->stretch || j->o->field) return VG_OK;
   VG_TRY(vg_flat_swap(m, &(struct vg_flat_limit){ FLAT * r->tolerance, j->far },
                       &j->n_flat, err));
   if (!j->n_flat) goto done;
@@ -483,7 +483,9 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                       const struct attempt *a, int *sound, struct vg_error *err)
 {
   struct vg_source_set set = VG_SOURCE_SET_INIT;
-  struct vg_stretch stretch = { .by = j->stretch ? j->stretch : j->o->stretch };
+  struct vg_stretch stretch = { .by = j->along   ? j->along
+                                    : j->stretch ? j->stretch
+                                                 : j->o->stretch };
   struct vg_remesh_report *r = &j->r;
   struct vg_tris w = { .ref = &j->ref,
                        .curves = &j->curves,
@@ -568,10 +570,13 @@ static vg_status try_once(struct vg_remesh_job *j, const struct vg_mesh *m,
                           struct vg_mesh *out, int *sound, struct vg_error *err)
 {
   const struct attempt once = { 1, 0, 0 };
+  size_t n_bad;
   vg_status st;
 
   VG_TRY(make(j, out, &once, sound, err));
-  if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
+  /* Triangles of thin strips are needles. */
+  n_bad = j->r.n_bad - (j->along ? j->r.cause[VG_REMESH_STRIP] : 0);
+  if ((double)n_bad > BAD * (double)out->n_tri) *sound = 0;
   if (!*sound) VG_TRY(vg_job_restart(j, m, o, no_cuts, err));
 done:
   return st;
@@ -587,8 +592,9 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   int sound = 0;
   vg_status st = VG_OK;
 
-  if (j->kept) { /* with the borders between patches as feature edges */
-    j->frees_borders = 1;
+  /* With the borders between patches and the strips of thin edges. */
+  if (j->kept || j->along || j->strips.has_edges) {
+    j->frees_borders = j->closes_edges = 1;
     VG_TRY(try_once(j, m, o, 0, out, &sound, err));
   }
   /* Larger sizes at midpoints of long feature edges may cause intersections, or

@@ -177,9 +177,10 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * Feature curves are preserved: sharp edges, open rims, borders between patches
  * of different conditions and fixed patch borders. Feature corners keep their
  * positions. If two feature curves run closer together than the tolerance,
- * pieces of the shorter one are dropped, except for rims and fixed borders
- * (strips.h). Patches keep their number and order; smooth patch borders follow
- * the edges of new triangles. Points that remain keep their order.
+ * pieces of the shorter one are dropped, except for rims, fixed borders and
+ * thin edges (strips.h). Triangles along thin edges are stretched. Patches keep
+ * their number and order; smooth patch borders follow the edges of new
+ * triangles. Points that remain keep their order.
  *
  * @param r  released first; may be NULL
  * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges

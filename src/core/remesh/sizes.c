@@ -207,6 +207,16 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
     }
 }
 
+/* Least size at a strip of width w in surroundings of the given size. The
+ * thinner the edge of a body is, the more it is like a sharp edge, which asks
+ * for none. */
+static double floor_of(double plain, double w, int is_edge)
+{
+  const double least = FLOOR * plain;
+
+  return is_edge && w < least ? fmin(least * sqrt(least / w), plain) : least;
+}
+
 /* Size at a strip: its width times `strip`, divided by the number of edges
  * requested across it. */
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
@@ -218,15 +228,21 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
   uint32_t end[2] = { vg_ref_from(r, h), vg_ref_to(r, h) };
 
   for (int i = 0; i < 3; i++) {
-    double x[3], w, most = fmax(r->plain[end[0]], r->plain[end[1]]);
+    const double most = fmax(r->plain[end[0]], r->plain[end[1]]);
+    struct vg_strip_end far_end;
+    double x[3], w;
+    int is_edge;
 
     for (int k = 0; k < 3; k++) x[k] = a[k] + share[i] * (b[k] - a[k]);
-    w = factor * vg_strip_width(r, c, h, x, most / factor, NULL);
+    w = factor * vg_strip_width(r, c, h, x, most / factor, &far_end);
+    if (!(w <= most)) continue;
+    is_edge = !(across > 1) && vg_strip_is_edge(r, h, far_end.half);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
-        r->size[end[k]] = fmax(w, fmin(r->plain[end[k]],
-                                       fmax(FLOOR * r->plain[end[k]], h_shape) /
-                                         across));
+        r->size[end[k]] = fmax(
+          w,
+          fmin(r->plain[end[k]],
+               fmax(floor_of(r->plain[end[k]], w, is_edge), h_shape) / across));
   }
 }
 

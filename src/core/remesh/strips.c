@@ -18,6 +18,9 @@
 #define ALONG 0.94  /* cosine: curves at a larger angle form a wedge */
 #define CLOSED 1.0  /* S35: of the tolerance: narrower strips are closed */
 #define SLENDER 3.0 /* S35: least length of a stretch, in widths */
+#define AROUND -0.5 /* S81: cosine between the faces of a thin body */
+#define THIN 0.02   /* S82: of the size: edges along narrower strips are */
+#define STRETCH 16  /* stretched, by this ratio */
 #define APART 4.0   /* tolerances between places, at most PLACES per edge */
 #define PLACES 256
 #define LINES 8 /* largest number of closed curves on a walk */
@@ -93,6 +96,14 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
       d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
   }
   return INFINITY;
+}
+
+int vg_strip_is_edge(const struct vg_ref *r, uint32_t g, uint32_t h)
+{
+  const uint32_t a = r->mate[g], b = r->mate[h];
+
+  return a != VG_REF_NONE && b != VG_REF_NONE &&
+         vg_dot(r->shape[a / 3].n, r->shape[b / 3].n) < AROUND;
 }
 
 /* --- which of two curves is dropped --------------------------------------- */
@@ -185,13 +196,14 @@ static int is_closed(const struct finder *f, size_t curve, double s)
 /* At position t of edge k of the curve, is the strip on the side of h narrow,
  * up to a curve that stays? Closed stretches are crossed. *width is the width
  * of the strip. */
-static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
+static int is_narrow(struct finder *f, size_t curve, size_t k, uint32_t h,
                      double t, double *width)
 {
   const struct vg_curves *c = f->c;
   const double *a = f->r->point[c->point[k]];
   const double *b = f->r->point[c->point[k + 1]];
   const double most = CLOSED * f->o->tolerance;
+  const uint32_t begin = h;
   struct vg_strip_end end;
   double x[3], s;
   uint32_t l;
@@ -207,7 +219,13 @@ static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
     j = vg_curve_of(c, l);
     if (j == curve) return 0;
     s = c->at[l - 1 + j] + vg_distance(end.x, f->r->point[c->point[l - 1 + j]]);
-    if (!is_closed(f, j, s)) return f->rank[j] < f->rank[curve];
+    if (!is_closed(f, j, s)) {
+      if (f->o->closes_edges || *width < VG_STRIP_LEAST * most ||
+          !vg_strip_is_edge(f->r, begin, end.half))
+        return f->rank[j] < f->rank[curve];
+      f->s->has_edges = 1;
+      return 0;
+    }
     h = f->r->mate[end.half];
     memcpy(x, end.x, sizeof x);
   }
@@ -216,8 +234,8 @@ static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
 
 /* Bisect between two positions, of which one is narrow, for the end of the
  * narrow part. *width is raised to the widths found. */
-static double change_at(const struct finder *f, size_t curve, size_t k,
-                        uint32_t h, double narrow, double wide, double *width)
+static double change_at(struct finder *f, size_t curve, size_t k, uint32_t h,
+                        double narrow, double wide, double *width)
 {
   for (int i = 0; i < BISECTIONS; i++) {
     double t = (narrow + wide) / 2, w;
@@ -404,6 +422,46 @@ done:
   free(f.found);
   if (st < 0) vg_strips_release(s);
   return st;
+}
+
+/* --- stretching ----------------------------------------------------------- */
+
+/* Is the strip inwards of feature edge h a thin edge of a body everywhere? */
+static int is_thin(const struct vg_ref *r, const struct vg_curves *c,
+                   uint32_t h)
+{
+  static const double share[3] = { 0.1, 0.5, 0.9 };
+  const double *a = vg_ref_at(r, h), *b = vg_ref_at(r, vg_half_next(h));
+  const double most = THIN * fmin(r->plain[vg_ref_from(r, h)],
+                                  r->plain[vg_ref_to(r, h)]);
+
+  for (int i = 0; i < 3; i++) {
+    struct vg_strip_end end;
+    double x[3];
+
+    for (int k = 0; k < 3; k++) x[k] = a[k] + share[i] * (b[k] - a[k]);
+    if (!(vg_strip_width(r, c, h, x, most, &end) < most) ||
+        !vg_strip_is_edge(r, h, end.half))
+      return 0;
+  }
+  return 1;
+}
+
+size_t vg_strips_stretch(const struct vg_ref *r, const struct vg_curves *c,
+                         const double *across, const uint32_t *tri_patch,
+                         double *by)
+{
+  size_t n = 0;
+
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
+    if (!c->line[h] || by[h] > 0 || (across && across[tri_patch[h / 3]] > 1) ||
+        !is_thin(r, c, h))
+      continue;
+    by[h] = STRETCH;
+    if (r->mate[h] != VG_REF_NONE) by[r->mate[h]] = STRETCH;
+    n++;
+  }
+  return n;
 }
 
 void vg_strips_release(struct vg_strips *s)

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/strips.h: narrow strips between two feature curves. Strips
  * narrower than the tolerance can only be filled with needles and are closed:
- * one of the two curves is dropped along the strip. Private to core/remesh.
+ * one of the two curves is dropped along the strip. The strip around the edge
+ * of a thin body, such as a blunt trailing edge, stays unless it is much
+ * narrower. Private to core/remesh.
  *
  *   shorter     o---.                                         .---o
  *   curve            '---a----o------o------o------o----b----'
@@ -39,8 +41,22 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
                       uint32_t h, const double x[3], double most,
                       struct vg_strip_end *end);
 
+/** Do the faces beyond the half-edges g and h of a strip turn away from each
+ * other, as those of a thin body do at its edge?
+ *
+ *   upper side  -----------.
+ *                          | strip of a blunt trailing edge
+ *   lower side  -----------'
+ */
+int vg_strip_is_edge(const struct vg_ref *r, uint32_t g, uint32_t h);
+
+#define VG_STRIP_LEAST 0.1 /* S81 */
+
 struct vg_strips_options {
   double tolerance;     /* Narrower strips are closed. */
+  int closes_edges;     /* 1: also those around the edges of thin bodies. 0:
+                           these are closed below VG_STRIP_LEAST of the
+                           tolerance. */
   const double *across; /* [n_patch] Strips in patches with values above 1 stay;
                            may be NULL. */
   const struct vg_curves_options *lines;
@@ -53,6 +69,8 @@ struct vg_strips {
                            are empty. */
   double length;        /* Total length of the closed stretches. */
   double widest, at[3]; /* Largest width of a closed strip, and its location. */
+  int has_edges; /* Strips narrower than the tolerance stay, because they are
+                    edges of thin bodies. */
   struct vg_mesh mesh;
   uint8_t *closed;     /* [3 mesh.n_tri] 1: half-edge of a closed stretch, on
                           both sides. */
@@ -77,6 +95,19 @@ vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
                          const struct vg_mesh *m,
                          const struct vg_strips_options *o, struct vg_strips *s,
                          struct vg_error *err);
+
+/** Stretch the edges along edges of thin bodies that are much narrower than the
+ * size around them, so that the number of triangles in them stays small.
+ *
+ * @param r       with sizes
+ * @param across  [n_patch] patches with values above 1 are left out; may be
+ *                NULL
+ * @param by      [3 n_tri] ratio of edges along a half-edge to those across it,
+ * on both sides of an edge; ratios above 0 are not changed Returns the number
+ * of half-edges set. O(n_tri). */
+size_t vg_strips_stretch(const struct vg_ref *r, const struct vg_curves *c,
+                         const double *across, const uint32_t *tri_patch,
+                         double *by);
 
 void vg_strips_release(struct vg_strips *s);
 
