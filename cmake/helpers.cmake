@@ -72,7 +72,11 @@ if(VG_WRAP)
   if(CMAKE_CXX_FLAGS MATCHES -fsanitize)
     list(APPEND options -O2 -fno-sanitize=all)
   endif()
-  set_source_files_properties(helpers/wrap/wrap.cpp PROPERTIES
+  set_source_files_properties(helpers/wrap/wrap.cpp helpers/wrap/unite.cpp
+    PROPERTIES
     COMPILE_DEFINITIONS NDEBUG COMPILE_OPTIONS "${options}")
+  # A false alarm of GCC in CGAL's search for self-intersections.
+  set_property(SOURCE helpers/wrap/unite.cpp APPEND PROPERTY COMPILE_OPTIONS
+    -Wno-maybe-uninitialized -Wno-unknown-warning-option)
   target_link_libraries(vanguard-wrap PRIVATE ${VG_GMP} ${VG_MPFR})
 endif()

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* vanguard-wrap: CGAL's alpha wrap and its tree of triangles as a helper
- * program of Vanguard. */
+/* vanguard-wrap: CGAL's alpha wrap, its tree of triangles and the union of
+ * closed shells (unite.h) as a helper program of Vanguard. */
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "common/serve.h"
+#include "wrap/unite.h"
 
 extern "C" const char vg_source_digest[];
 
@@ -124,6 +125,15 @@ void give(const Mesh &from)
   vg_serve_put_array(tri.data(), tri.size() * sizeof tri[0]);
 }
 
+void give_united(const vg_united &u)
+{
+  vg_serve_put(VG_HELPER_SURFACE, 0, u.x.size() / 3, u.tri.size() / 3);
+  vg_serve_put_array(u.x.data(), u.x.size() * sizeof u.x[0]);
+  vg_serve_put_array(u.tri.data(), u.tri.size() * sizeof u.tri[0]);
+  vg_serve_put(VG_HELPER_COUNTS, 0, u.from.size(), 0);
+  vg_serve_put_array(u.from.data(), u.from.size() * sizeof u.from[0]);
+}
+
 void find_nearest(const Input &in, const vg_serve_surface &s)
 {
   std::vector<std::array<double, 3>> foot(s.n_more);
@@ -189,6 +199,7 @@ bool answer(const vg_helper_message &m, const vg_serve_surface &s)
     wrap(m, s, made);
     give(made);
     return true;
+  case VG_HELPER_UNITE: give_united(vg_unite(s, m.option == 1)); return true;
   case VG_HELPER_NEAREST: find_nearest(Input(s), s); return true;
   case VG_HELPER_OUTSIDE: find_outside(Input(s), s); return true;
   case VG_HELPER_CROSSINGS: find_crossings(Input(s), s); return true;

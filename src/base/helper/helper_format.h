@@ -51,6 +51,10 @@ enum {
   VG_HELPER_OUTSIDE = 12,   /* n[2] points */
   VG_HELPER_CROSSINGS = 13, /* n[2] segments: their first points, then their
                                last points */
+  VG_HELPER_UNITE = 14,     /* closed shells without common points; option 1:
+                               subtract all others from the first; answered by
+                               VG_HELPER_SURFACE, then VG_HELPER_COUNTS: the
+                               input triangle of each triangle */
 
   /* Replies. */
   VG_HELPER_CELLS = 20,    /* n[0] added points, n[1] tetrahedra */

@@ -162,6 +162,32 @@ done:
   return st;
 }
 
+vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
+                        const struct vg_stop *stop, struct vg_mesh *out,
+                        uint32_t **from, struct vg_error *err)
+{
+  struct request r = { .m = { .what = VG_HELPER_UNITE,
+                              .option = subtracts != 0 } };
+  vg_status st = ask(&r, m, 0, NULL, stop, err);
+
+  if (st < 0) return st;
+  VG_TRY(receive(&r, VG_HELPER_SURFACE, err));
+  if (r.m.what != VG_HELPER_SURFACE) VG_TRY(damaged(err));
+  st = vg_wrap_receive_surface(&r.link, r.m.n[0], r.m.n[1], out, err);
+  if (st == VG_BLOCKED) st = explain(&r, err);
+  if (st < 0) goto done;
+  VG_TRY(receive(&r, VG_HELPER_COUNTS, err));
+  if (r.m.what != VG_HELPER_COUNTS || r.m.n[0] != out->n_tri)
+    VG_TRY(damaged(err));
+  *from = vg_link_get_array(&r.link, out->n_tri, sizeof **from);
+  if (!*from) VG_TRY(explain(&r, err));
+  for (size_t i = 0; i < out->n_tri; i++)
+    if ((*from)[i] >= m->n_tri) st = damaged(err);
+done:
+  vg_helper_close(&r.child);
+  return st;
+}
+
 /* Ask for a count for each of n items, which have n_more points. */
 static vg_status count(uint32_t what, const struct vg_mesh *m, size_t n,
                        size_t n_more, const double (*more)[3],

@@ -24,6 +24,16 @@ vg_status vg_wrap_receive_surface(struct vg_link *l, uint64_t n_point,
                                   uint64_t n_tri, struct vg_mesh *out,
                                   struct vg_error *err);
 
+/** Unite closed shells without common points that point outwards, or subtract
+ * all others from the first.
+ *
+ * @param out   empty; released by the caller, also on failure
+ * @param from  out: [out->n_tri] triangle of m; free() it
+ * VG_ERR_GEOMETRY: CGAL cannot unite them. */
+vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
+                        const struct vg_stop *stop, struct vg_mesh *out,
+                        uint32_t **from, struct vg_error *err);
+
 /** Classify points as inside or outside the closed surface m by the parity of a
  * ray.
  *

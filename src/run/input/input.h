@@ -123,6 +123,7 @@ struct vg_boundary {
   struct vg_surface_report check;
   int require_bc;           /* The input sets boundary conditions. */
   int is_remeshed;          /* The settings remesh the surface. */
+  int is_united;            /* Bodies that meet were united. */
   struct vg_flow flow;      /* The decided flow domain. */
   double rim_gap;           /* Weld tolerance at which open edges find partners;
                                0: they have none. */

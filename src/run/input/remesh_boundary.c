@@ -135,13 +135,14 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
 }
 
 /* Volumes of the remeshed surface and of the CAD model, if both are closed and
- * nothing was dropped or capped. Integrated about a corner, so that numbers are
+ * nothing was dropped, capped or united. Integrated about a corner, so that numbers are
  * small wherever the body is. */
 static void take_volumes(struct vg_boundary *b)
 {
   const struct vg_mesh *m = &b->surface;
   const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
-                       !b->flow.n_cavity && !b->n_given_patch;
+                       !b->flow.n_cavity && !b->n_given_patch &&
+                       !b->is_united;
 
   b->remeshing.volume[0] = b->remeshing.volume[1] = NAN;
   if (!b->model.cad || !is_whole || !m->n_tri) return;

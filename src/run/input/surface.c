@@ -309,9 +309,14 @@ static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
     VG_TRY(take_rows(b, b->n_row, b->row, err));
     VG_TRY(check(b, -1, show, err));
   }
-  if (!(s->wrap > 0)) goto done;
-  VG_TRY(wrap(b, show, err));
-  VG_TRY(check(b, -1, show, err));
+  if (s->wrap > 0) {
+    VG_TRY(wrap(b, show, err));
+    VG_TRY(check(b, -1, show, err));
+  } else if (s->repair && b->check.n_defect) {
+    st = vg_boundary_unite(b, show, err);
+    if (st == VG_OK) VG_TRY(check(b, -1, show, err));
+    else if (st == VG_BLOCKED) st = VG_OK;
+  }
 done:
   return st;
 }
