@@ -30,6 +30,7 @@
 #define KEEPS                                                                  \
   7 /* S48: further attempts, in which input triangles are kept; each doubles  \
        the neighbourhood */
+#define DEEP 3.0  /* S31: of the tolerance: depth of hopeless intersections */
 #define MENDS 4   /* in each attempt: smaller triangles at intersections */
 #define SPOTS 256 /* most spots added at a time */
 #define SPOT_LEAST 0.0625 /* S34: of h_min: least size at a spot */
@@ -318,16 +319,19 @@ static vg_status keep_around(struct vg_remesh_job *j, const struct vg_mesh *m,
   return VG_OK;
 }
 
+static vg_status refuse_crossing(const struct vg_remesh_job *j,
+                                 const double at[3], struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "near (%g, %g, %g) the surface intersects itself by more than "
+                 "the remeshing tolerance %g: repair the model there",
+                 at[0], at[1], at[2], j->r.tolerance);
+}
+
 static vg_status refuse(const struct vg_remesh_job *j,
                         const struct vg_defect *d, struct vg_error *err)
 {
-  if (j->r.n_crossing[1])
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "near (%g, %g, %g) the surface intersects itself (%s) by "
-                   "more than the remeshing tolerance %g: repair the model "
-                   "there",
-                   d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind),
-                   j->r.tolerance);
+  if (j->r.n_crossing[1]) return refuse_crossing(j, d->at, err);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "near (%g, %g, %g) remeshed triangles intersect at all "
                  "sizes that were tried (%s): give a smaller "
@@ -592,14 +596,18 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   int sound = 0;
   vg_status st = VG_OK;
 
+  /* No change within the tolerance separates such parts. */
+  if (hopeless && j->r.crossing_depth > DEEP * j->r.tolerance)
+    return refuse_crossing(j, j->r.crossing_at, err);
   /* With the borders between patches and the strips of thin edges. */
-  if (j->kept || j->along || j->strips.has_edges) {
+  if (!hopeless && (j->kept || j->along || j->strips.has_edges)) {
     j->frees_borders = j->closes_edges = 1;
     VG_TRY(try_once(j, m, o, 0, out, &sound, err));
   }
   /* Larger sizes at midpoints of long feature edges may cause intersections, or
    * prevent needles next to a sharp edge of zero thickness from being split. */
-  if (!sound && j->is_cut) VG_TRY(try_once(j, m, o, 1, out, &sound, err));
+  if (!sound && !hopeless && j->is_cut)
+    VG_TRY(try_once(j, m, o, 1, out, &sound, err));
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
                                !j->strips.n && round == rounds ? 1 : 0 };

@@ -92,12 +92,13 @@ static int has_copies(const struct vg_faces *s, const uint32_t *first)
  * stays. */
 static void list_superfluous(const struct vg_mesh *m, const struct vg_faces *s,
                              const uint32_t *first, const uint8_t *copy,
-                             uint8_t *drop, struct vg_surface_report *r)
+                             int keeps_walls, uint8_t *drop,
+                             struct vg_surface_report *r)
 {
   for (size_t t = 0; t < m->n_tri; t++) {
     uint32_t f = first[t];
-    int is_wall = copy && copy[t] == VG_COPY_WALL && f < m->n_tri &&
-                  !has_cells(m);
+    int is_wall = !keeps_walls && copy && copy[t] == VG_COPY_WALL &&
+                  f < m->n_tri && !has_cells(m);
     int is_copy = copy && f != t &&
                   (copy[t] == VG_COPY_SKIN ||
                    vg_faces_same_side(s->node[f], s->node[t]));
@@ -109,7 +110,7 @@ static void list_superfluous(const struct vg_mesh *m, const struct vg_faces *s,
 }
 
 static vg_status tidy_triangles(struct vg_mesh *m, const uint32_t *same,
-                                struct vg_surface_report *r,
+                                int keeps_walls, struct vg_surface_report *r,
                                 struct vg_error *err)
 {
   struct vg_faces s = VG_FACES_INIT;
@@ -121,7 +122,7 @@ static vg_status tidy_triangles(struct vg_mesh *m, const uint32_t *same,
   VG_TRY(vg_faces_build(&s, m, same, err));
   VG_TRY(vg_faces_duplicate(&s, &first, err));
   if (has_copies(&s, first)) VG_TRY(vg_faces_copies(&s, first, &copy, err));
-  list_superfluous(m, &s, first, copy, drop, r);
+  list_superfluous(m, &s, first, copy, keeps_walls, drop, r);
   vg_mesh_drop_tri(m, drop);
 done:
   vg_faces_release(&s);
@@ -132,8 +133,8 @@ done:
 }
 
 /* Merge points, drop superfluous triangles, then drop unused points. */
-static vg_status tidy(struct vg_mesh *m, struct vg_surface_report *r,
-                      struct vg_error *err)
+static vg_status tidy(struct vg_mesh *m, int keeps_walls,
+                      struct vg_surface_report *r, struct vg_error *err)
 {
   size_t n_point = m->n_point;
   uint32_t *map = NULL;
@@ -141,7 +142,7 @@ static vg_status tidy(struct vg_mesh *m, struct vg_surface_report *r,
   vg_status st = VG_OK;
 
   VG_TRY(vg_points_same(m, &map, err));
-  VG_TRY(tidy_triangles(m, map, r, err));
+  VG_TRY(tidy_triangles(m, map, keeps_walls, r, err));
   used = vg_calloc(m->n_point, 1);
   if (!used) VG_TRY(vg_fail_memory(err, "a list of points"));
   mark(used, (uint32_t *)m->tri, 3 * m->n_tri);
@@ -572,7 +573,7 @@ static vg_status run(struct check *c)
   struct vg_surface_report *r = c->r;
   vg_status st;
 
-  if (c->o->repair) VG_TRY(tidy(c->m, r, c->err));
+  if (c->o->repair) VG_TRY(tidy(c->m, c->o->keeps_walls, r, c->err));
   VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(build(c));
   VG_TRY(vg_stopped(&c->o->stop, c->err));

@@ -82,15 +82,17 @@ struct vg_surface_report {
 #define VG_SURFACE_PAIR_MAX 262144
 
 struct vg_surface_check_options {
-  int repair;     /* 1: orient, drop unused or duplicate points and triangles
-                     where unambiguous. */
-  int require_bc; /* 1: report patches without a condition. */
-  int external;   /* 1: the closed shells are bodies in a fluid that a farfield
-                     will enclose: normals of outermost shells must point
-                     outwards, into the fluid. 0: outermost shells bound the
-                     fluid from outside (normals inwards). -1: not known; the
-                     sides of shells are neither checked nor changed. */
-  int threads;    /* 0: one per core. The result does not depend on it. */
+  int repair;      /* 1: orient, drop unused or duplicate points and triangles
+                      where unambiguous. */
+  int keeps_walls; /* 1: the repair leaves walls shared by touching bodies,
+                      which are reported. */
+  int require_bc;  /* 1: report patches without a condition. */
+  int external;    /* 1: the closed shells are bodies in a fluid that a farfield
+                      will enclose: normals of outermost shells must point
+                      outwards, into the fluid. 0: outermost shells bound the
+                      fluid from outside (normals inwards). -1: not known; the
+                      sides of shells are neither checked nor changed. */
+  int threads;     /* 0: one per core. The result does not depend on it. */
   struct vg_stop stop;
 };
 #define VG_SURFACE_CHECK_OPTIONS_INIT                                          \

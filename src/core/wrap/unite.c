@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Outline: shells are connected by edges of two triangles. Findings of the
+/* Outline: shells are connected by edges; where more than two triangles meet,
+ * the two sides of a shared wall belong to different shells. Findings of the
  * check tell which of them meet; these form sets. The helper unites the shells
  * of one set after the other, and its result replaces them. */
 #include "core/wrap/unite.h"
@@ -18,19 +19,19 @@
 #define FULL 0.75  /* S83: of its bounding box: a tunnel or a room */
 
 struct shell {
-  size_t n_tri, first;          /* Number of its triangles, and the first. */
-  double volume, lo[3], hi[3];  /* Signed volume; bounding box. */
-  double area, left;            /* Area before, and in the result. */
-  int is_faulty;                /* Open, not manifold, or intersects itself. */
+  size_t n_tri, first;         /* Number of its triangles, and the first. */
+  double volume, lo[3], hi[3]; /* Signed volume; bounding box. */
+  double area, left;           /* Area before, and in the result. */
+  int is_faulty;               /* Open, not manifold, or intersects itself. */
 };
 
 struct work {
   const struct vg_mesh *m;
   const struct vg_unite_options *o;
-  uint32_t *up;       /* [n_tri] union-find over edges of two triangles. */
-  uint32_t *of;       /* [n_tri] Shell. */
-  uint32_t *set;      /* [n_shell] union-find over shells that meet. */
-  uint32_t *members;  /* [n_shell] Number of shells of the set of each root. */
+  uint32_t *up;      /* [n_tri] union-find over edges. */
+  uint32_t *of;      /* [n_tri] Shell. */
+  uint32_t *set;     /* [n_shell] union-find over shells that meet. */
+  uint32_t *members; /* [n_shell] Number of shells of the set of each root. */
   size_t n_shell;
   struct shell *shell;
 };
@@ -71,6 +72,44 @@ static void measure(struct work *w)
   }
 }
 
+static int are_copies(const uint32_t a[3], const uint32_t b[3])
+{
+  for (int i = 0; i < 3; i++)
+    if (a[i] != b[0] && a[i] != b[1] && a[i] != b[2]) return 0;
+  return 1;
+}
+
+/* The next triangle of the shell across an edge: the only one in the opposite
+ * direction that is not a copy. Copies are the two sides of a wall that bodies
+ * share. UINT32_MAX: there is none, or more than one. */
+static uint32_t across(const struct vg_mesh *m, const uint32_t *half,
+                       uint32_t n, uint32_t h)
+{
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])m->tri;
+  uint32_t found = UINT32_MAX;
+
+  for (uint32_t i = 0; i < n; i++) {
+    if (vg_half_from(tri, half[i]) == vg_half_from(tri, h) ||
+        (n > 2 && are_copies(tri[half[i] / 3], tri[h / 3])))
+      continue;
+    if (found != UINT32_MAX) return UINT32_MAX;
+    found = half[i];
+  }
+  return found;
+}
+
+static void join(struct work *w, const struct vg_edges *e, size_t i)
+{
+  const uint32_t *half = e->half + e->start[i];
+  const uint32_t n = vg_edges_count(e, i);
+
+  for (uint32_t k = 0; k < n; k++) {
+    const uint32_t g = across(w->m, half, n, half[k]);
+
+    if (g != UINT32_MAX) vg_union(w->up, half[k] / 3, g / 3);
+  }
+}
+
 static vg_status find_shells(struct work *w, const struct vg_edges *e,
                              struct vg_error *err)
 {
@@ -80,9 +119,7 @@ static vg_status find_shells(struct work *w, const struct vg_edges *e,
   w->of = vg_alloc(n, sizeof *w->of);
   if (!w->up || !w->of) return vg_fail_memory(err, "the shells");
   for (size_t t = 0; t < n; t++) w->up[t] = (uint32_t)t;
-  for (size_t i = 0; i < e->n; i++)
-    if (vg_edges_count(e, i) == 2)
-      vg_union(w->up, e->half[e->start[i]] / 3, e->half[e->start[i] + 1] / 3);
+  for (size_t i = 0; i < e->n; i++) join(w, e, i);
   for (size_t t = 0; t < n; t++) {
     const uint32_t root = vg_root_of(w->up, (uint32_t)t);
 
@@ -188,8 +225,7 @@ static void add_shell(const struct work *w, uint32_t shell, uint32_t *number,
 
       if (number[p] == UINT32_MAX) {
         number[p] = (uint32_t)q->mesh.n_point;
-        memcpy(q->mesh.point[q->mesh.n_point++], m->point[p],
-               sizeof *m->point);
+        memcpy(q->mesh.point[q->mesh.n_point++], m->point[p], sizeof *m->point);
       }
       v[k] = number[p];
     }
@@ -253,9 +289,9 @@ static vg_status append(struct work *w, const struct vg_mesh *u,
     for (int k = 0; k < 3; k++)
       to->tri[at][k] = u->tri[t][k] + (uint32_t)to->n_point;
     to->tri_patch[at] = w->m->tri_patch[given];
-    w->shell[w->of[given]].left +=
-      vg_triangle_area(u->point[u->tri[t][0]], u->point[u->tri[t][1]],
-                       u->point[u->tri[t][2]]);
+    w->shell[w->of[given]].left += vg_triangle_area(u->point[u->tri[t][0]],
+                                                    u->point[u->tri[t][1]],
+                                                    u->point[u->tri[t][2]]);
   }
   if (u->n_point)
     memcpy(to->point + to->n_point, u->point, u->n_point * sizeof *u->point);
@@ -273,8 +309,8 @@ static vg_status unite_set(struct work *w, uint32_t root, struct vg_mesh *to,
   vg_status st;
 
   VG_TRY(make_request(w, root, &q, err));
-  VG_TRY(vg_wrap_unite(&q.mesh, w->o->subtracts, &w->o->stop, &united, &from,
-                       err));
+  VG_TRY(
+    vg_wrap_unite(&q.mesh, w->o->subtracts, &w->o->stop, &united, &from, err));
   VG_TRY(append(w, &united, from, &q, to, err));
 done:
   request_release(&q);

@@ -28,14 +28,14 @@ struct vg_unite_options {
 };
 
 struct vg_unite_report {
-  size_t n_shell, n_set;     /* Shells that were united, and the number of sets
-                                of shells that meet. */
-  size_t n_before, n_after;  /* Their triangles. */
-  int is_ambiguous;          /* A shell is mostly inside another one that fills
-                                most of its bounding box: the one around it may
-                                be the wall of a tunnel or a room. */
-  double at[3];              /* A point of the shell inside. */
-  uint32_t inside, around;   /* Patches of both. */
+  size_t n_shell, n_set;    /* Shells that were united, and the number of sets
+                               of shells that meet. */
+  size_t n_before, n_after; /* Their triangles. */
+  int is_ambiguous;         /* A shell is mostly inside another one that fills
+                               most of its bounding box: the one around it may
+                               be the wall of a tunnel or a room. */
+  double at[3];             /* A point of the shell inside. */
+  uint32_t inside, around;  /* Patches of both. */
 };
 
 /** Unite the shells of m that meet.

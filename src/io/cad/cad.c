@@ -330,6 +330,7 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   VG_TRY(take_array(k, n.n_tri, sizeof *m->tri, &m->tri, err));
   m->n_tri = n.n_tri;
   s->is_solid = n.is_solid != 0;
+  s->n_solid = n.n_solid > 0 ? (size_t)n.n_solid : 0;
   s->volume = n.volume;
   s->unit = n.unit > 0 && n.unit < VG_CAD_UNIT_N ? (int)n.unit : 0;
   VG_TRY(take_array(k, n.n_tri, sizeof *s->tri_face, &s->tri_face, err));
@@ -536,7 +537,7 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
-  send_file(&k, &view, kind, 0, with_volume);
+  send_file(&k, &view, kind, o->keeps_solids ? 2 : 0, with_volume);
   st = await_surface(&k, out, err);
   if (st < 0 && crashed_uniting(&k)) {
     if (o->note)

@@ -66,6 +66,8 @@ struct vg_cad_options {
    * bounding box, or 1e-6 of that of the median face, whichever is larger. */
   double least;
   double seconds; /* time limit; 0: none */
+  int keeps_solids; /* 1: solids that touch or overlap are triangulated one by
+                       one, each with all its faces; 0: they are united */
   /* Receives lines for a report: the unit, and the faces and edges that were
    * healed or dropped, with their locations. May be NULL. */
   void (*note)(void *user, const char *text);
@@ -97,6 +99,7 @@ struct vg_cad_surface {
    * two faces. */
   double volume;
   int unit; /* enum vg_cad_unit, of the result; FILE: not known */
+  size_t n_solid; /* number of solids of the file */
 };
 #define VG_CAD_SURFACE_INIT                                                    \
   {                                                                            \

@@ -25,7 +25,8 @@ struct vg_cad_ask {
   int32_t unit, patches;
   uint64_t n;
   double tolerance, chord, angle, least;
-  int32_t leave_apart; /* 1: do not unite solids */
+  int32_t leave_apart; /* 1: do not unite solids; 2: and keep the walls that
+                          they share */
   int32_t with_volume; /* 1: determine is_solid and volume */
 };
 
@@ -55,6 +56,7 @@ struct vg_cad_counts {
   int64_t is_solid;
   double volume;
   int64_t unit; /* of the result; 0: not known */
+  int64_t n_solid;
 };
 
 struct vg_cad_patch {

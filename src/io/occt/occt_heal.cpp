@@ -592,9 +592,10 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
   double tolerance;
 
   talk.stage("looking for duplicate faces");
-  drop_copies(model, list, model.n_solid < 2, talk);
+  if (model.n_solid < 2 || ask.leave_apart < 2)
+    drop_copies(model, list, model.n_solid < 2, talk);
   tolerance = sew(ask, model, talk);
-  if (model.n_solid > 1) {
+  if (model.n_solid > 1 && ask.leave_apart < 2) {
     unite(ask, model, talk);
     list = drop_slits(model, talk);
     drop_copies(model, list, true, talk);

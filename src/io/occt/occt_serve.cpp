@@ -109,7 +109,7 @@ void send(const Model &model, const Surface &s, const Talk &talk)
   const vg_cad_counts n = {
     s.point.size() / 3, s.tri.size() / 3, s.segment.size() / 2,
     s.patches.size(),   model.is_solid,   model.volume,
-    model.unit
+    model.unit,         model.n_solid
   };
 
   talk.put(&t, sizeof t);

@@ -182,7 +182,7 @@ done:
   return st;
 }
 
-vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
+vg_status vg_boundary_refuse_open(struct vg_boundary *b,
                                   struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;

@@ -107,6 +107,14 @@ struct vg_read {
 /** 2. The surface, checked, closed and remeshed (vg_boundary_shape), and 3. the
  * boundary of the fluid, completed by a farfield and a symmetry plane
  * (vg_boundary_close). Layers set conditions of its patches. */
+/* Messages on a surface that cannot be repaired name a wrap, unless other
+ * tessellations follow. */
+enum vg_remedy {
+  VG_REMEDY_NOW,   /* They do. */
+  VG_REMEDY_LATER, /* They do not. */
+  VG_REMEDY_ASKED  /* They do not, but one would have. */
+};
+
 struct vg_boundary {
   const struct vg_read *read; /* Borrowed. */
   struct vg_notes *notes;     /* Borrowed. */
@@ -135,6 +143,7 @@ struct vg_boundary {
   struct vg_remeshing remeshing;
   struct vg_domain_report domain;
   int is_swapped; /* Edges of the surface were swapped. */
+  enum vg_remedy remedy;
 };
 
 /** The data of a run up to its mesh. All commands and the library create them

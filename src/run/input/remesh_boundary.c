@@ -135,14 +135,13 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
 }
 
 /* Volumes of the remeshed surface and of the CAD model, if both are closed and
- * nothing was dropped, capped or united. Integrated about a corner, so that numbers are
- * small wherever the body is. */
+ * nothing was dropped, capped or united. Integrated about a corner, so that
+ * numbers are small wherever the body is. */
 static void take_volumes(struct vg_boundary *b)
 {
   const struct vg_mesh *m = &b->surface;
   const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
-                       !b->flow.n_cavity && !b->n_given_patch &&
-                       !b->is_united;
+                       !b->flow.n_cavity && !b->n_given_patch && !b->is_united;
 
   b->remeshing.volume[0] = b->remeshing.volume[1] = NAN;
   if (!b->model.cad || !is_whole || !m->n_tri) return;
@@ -359,6 +358,46 @@ static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
   }
 }
 
+/* Replaces the surface by a new tessellation m; notes from n_note on referred
+ * to the previous one. */
+static void take_surface(struct vg_boundary *b, struct vg_mesh *m,
+                         const struct vg_mesh *given, size_t n_note)
+{
+  keep_conditions(given, m);
+  vg_mesh_move(&b->surface, m);
+  vg_remeshing_release(&b->remeshing);
+  while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
+}
+
+/* Reads the file again without uniting its solids. */
+static vg_status take_solids(struct vg_boundary *b, const struct vg_mesh *given,
+                             size_t n_note, struct vg_display *show,
+                             struct vg_error *err)
+{
+  struct vg_cad_options cad = vg_options_cad(&b->read->settings, 1);
+  struct vg_cad_model model = VG_CAD_MODEL_INIT;
+  struct vg_read_info info = { .cad = &cad, .model = &model, .mapbc = NULL };
+  struct vg_mesh m = VG_MESH_INIT;
+  vg_status st;
+
+  cad.stop = (struct vg_stop){ vg_display_stop, show };
+  cad.keeps_solids = 1;
+  vg_display_update(show, "tessellation of its solids", 0, 0);
+  VG_TRY(vg_surface_read(b->read->files.surface, &m, &info, err));
+  take_surface(b, &m, given, n_note);
+  vg_cad_model_release(&b->model);
+  b->model = model;
+  vg_note(b->notes,
+          "the union of %zu solids by Open CASCADE did not give a valid "
+          "surface; the solids were triangulated one by one",
+          model.surface.n_solid);
+  return VG_OK;
+done:
+  vg_cad_model_release(&model);
+  vg_mesh_release(&m);
+  return st;
+}
+
 vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
                                  const struct vg_patch *patch, size_t n_patch,
                                  size_t n_note, struct vg_display *show,
@@ -371,19 +410,20 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
-  if (i >= TRIES || !b->model.cad) return VG_BLOCKED;
+  if (!b->model.cad) return VG_BLOCKED;
+  if (b->model.surface.n_solid > 1 && i == 0)
+    return take_solids(b, &given, n_note, show, err);
+  if (b->model.surface.n_solid > 1) i--;
+  if (i >= TRIES) return VG_BLOCKED;
   cad.stop = (struct vg_stop){ vg_display_stop, show };
   cad.chord = fmin(cad.chord * again[i][0], 0.1);
   cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
   vg_display_update(show, "tessellation", 0, 0);
   VG_TRY(vg_cad_again(b->model.cad, &cad, &fresh, err));
   VG_TRY(vg_mesh_copy(&m, &fresh.mesh, err));
-  keep_conditions(&given, &m);
-  vg_mesh_move(&b->surface, &m);
+  take_surface(b, &m, &given, n_note);
   vg_cad_surface_release(&b->model.surface);
   b->model.surface = fresh;
-  vg_remeshing_release(&b->remeshing);
-  while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
   vg_note(b->notes,
           "the first tessellation of the CAD model did not give a valid "
           "surface; it was repeated with a chord error of %.2g and an angle "

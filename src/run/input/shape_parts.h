@@ -108,7 +108,7 @@ vg_status vg_boundary_add_caps(const struct vg_boundary *b, struct vg_mesh *m,
 
 /** Returns VG_ERR_GEOMETRY with a message that lists the rims of an open
  * surface and describes how to close them. */
-vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
+vg_status vg_boundary_refuse_open(struct vg_boundary *b,
                                   struct vg_display *show,
                                   struct vg_error *err);
 
@@ -142,8 +142,8 @@ vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
 /** Suggests a wrap for a surface that cannot be repaired, as the end of a
  * message: "; --wrap 0.2 puts a closed surface around it". The wrap is tried
  * first, which takes some seconds. text[120]: "" if a wrap does not help. */
-void vg_boundary_suggest_wrap(const struct vg_boundary *b,
-                              struct vg_display *show, char *text, size_t size);
+void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
+                              char *text, size_t size);
 
 /** Whether open edges are the only defects. */
 int vg_is_only_open(const struct vg_surface_report *r);

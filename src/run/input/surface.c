@@ -83,15 +83,16 @@ static void note_repairs(struct vg_boundary *b, int external)
             b->check.n_removed_tri);
 }
 
-/* external: as in vg_surface_check_options. */
-static vg_status check(struct vg_boundary *b, int external,
-                       struct vg_display *show, struct vg_error *err)
+/* external, keeps_walls: as in vg_surface_check_options. */
+static vg_status check_as(struct vg_boundary *b, int external, int keeps_walls,
+                          struct vg_display *show, struct vg_error *err)
 {
   struct vg_surface_check_options o = vg_options_check(&b->read->settings);
   vg_status st;
 
   o.require_bc = b->require_bc;
   o.external = external;
+  o.keeps_walls = keeps_walls;
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   vg_display_update(show, "surface check", b->surface.n_tri, 0);
@@ -100,7 +101,13 @@ static vg_status check(struct vg_boundary *b, int external,
   return st;
 }
 
-static vg_status defects(const struct vg_boundary *b, struct vg_display *show,
+static vg_status check(struct vg_boundary *b, int external,
+                       struct vg_display *show, struct vg_error *err)
+{
+  return check_as(b, external, 0, show, err);
+}
+
+static vg_status defects(struct vg_boundary *b, struct vg_display *show,
                          struct vg_error *err)
 {
   char remedy[120];
@@ -288,6 +295,47 @@ done:
   return st;
 }
 
+/* Unites bodies that meet. Returns VG_BLOCKED, with nothing changed, if there
+ * are none that can be united. */
+static vg_status unite(struct vg_boundary *b, struct vg_display *show,
+                       struct vg_error *err)
+{
+  vg_status st;
+
+  if (!b->read->settings.repair || b->read->settings.wrap > 0 ||
+      !b->check.n_defect)
+    return VG_BLOCKED;
+  VG_TRY(vg_boundary_unite(b, show, err));
+  if (st == VG_OK) VG_TRY(check(b, -1, show, err));
+done:
+  return st;
+}
+
+/* Checks the surface. Walls shared as a whole by touching bodies are removed.
+ * If that leaves defects, because bodies share parts of walls, too, they are
+ * united with all their walls. */
+static vg_status check_bodies(struct vg_boundary *b, struct vg_display *show,
+                              struct vg_error *err)
+{
+  const size_t n_note = b->notes->n;
+  struct vg_mesh whole = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(check_as(b, -1, 1, show, err));
+  if (!b->check.count[VG_DEFECT_SHARED_WALL]) goto done;
+  VG_TRY(vg_mesh_copy(&whole, &b->surface, err));
+  VG_TRY(check(b, -1, show, err));
+  if (!b->check.n_defect) goto done;
+  while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
+  vg_mesh_move(&b->surface, &whole);
+  VG_TRY(check_as(b, -1, 1, show, err));
+  VG_TRY(unite(b, show, err));
+  if (st == VG_BLOCKED) VG_TRY(check(b, -1, show, err));
+done:
+  vg_mesh_release(&whole);
+  return st;
+}
+
 /* Closes the surface as far as the settings request it, and checks it. */
 static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
@@ -298,7 +346,7 @@ static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
   if (s->weld > 0)
     VG_TRY(
       vg_surface_weld(&b->surface, s->weld, &b->n_welded, &b->n_dropped, err));
-  VG_TRY(check(b, -1, show, err));
+  VG_TRY(check_bodies(b, show, err));
   VG_TRY(weld_rims(b, show, err));
   if (s->close_holes && b->check.count[VG_DEFECT_OPEN_EDGE]) {
     /* Rims are followed along consistently oriented triangles, as left by the
@@ -312,10 +360,9 @@ static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
   if (s->wrap > 0) {
     VG_TRY(wrap(b, show, err));
     VG_TRY(check(b, -1, show, err));
-  } else if (s->repair && b->check.n_defect) {
-    st = vg_boundary_unite(b, show, err);
-    if (st == VG_OK) VG_TRY(check(b, -1, show, err));
-    else if (st == VG_BLOCKED) st = VG_OK;
+  } else {
+    VG_TRY(unite(b, show, err));
+    st = VG_OK;
   }
 done:
   return st;
@@ -390,7 +437,35 @@ static vg_status take_given(const struct vg_boundary *b, struct given *g,
   return VG_OK;
 }
 
-/* Uses the first tessellation that leads to a valid surface. */
+/* Whether shells cross each other. No other tessellation changes that. */
+static int shells_cross(const struct vg_boundary *b)
+{
+  const struct vg_surface_report *r = &b->check;
+
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const struct vg_defect *d = &r->defect[i];
+
+    if (d->kind == VG_DEFECT_INTERSECTION && d->face[0] < b->surface.n_tri &&
+        d->face[1] < b->surface.n_tri &&
+        r->tri_shell[d->face[0]] != r->tri_shell[d->face[1]])
+      return 1;
+  }
+  return 0;
+}
+
+/* Completes the message on a surface that no tessellation made valid. */
+static vg_status refuse(struct vg_boundary *b, const struct vg_error *why,
+                        struct vg_display *show, struct vg_error *err)
+{
+  char remedy[120];
+
+  b->remedy = VG_REMEDY_NOW;
+  vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
+  return vg_fail(err, VG_ERR_GEOMETRY, "%s%s", why->text, remedy);
+}
+
+/* Uses the first tessellation that leads to a valid surface. A remedy is
+ * searched for once, at the end. */
 static vg_status try_shapes(struct vg_boundary *b,
                             const struct vg_shape_options *o,
                             struct vg_display *show, struct vg_error *err)
@@ -400,10 +475,12 @@ static vg_status try_shapes(struct vg_boundary *b,
   vg_status st, next;
 
   VG_TRY(take_given(b, &g, err));
+  if (b->model.cad) b->remedy = VG_REMEDY_LATER;
   st = shape(b, o, show, &why);
   for (size_t i = 0; st == VG_ERR_GEOMETRY && !is_open_for_good(b, o); i++) {
     struct vg_error again = VG_ERROR_INIT;
 
+    if (shells_cross(b) && (i || b->model.surface.n_solid < 2)) break;
     next = vg_boundary_tessellate(b, i, g.patch, g.n_patch, g.n_note, show,
                                   &again);
     if (next == VG_BLOCKED) break;
@@ -416,7 +493,9 @@ static vg_status try_shapes(struct vg_boundary *b,
     st = shape(b, o, show, &again);
     if (st < 0 && st != VG_ERR_GEOMETRY) why = again;
   }
-  if (st < 0) *err = why;
+  if (st == VG_ERR_GEOMETRY && b->remedy == VG_REMEDY_ASKED)
+    st = refuse(b, &why, show, err);
+  else if (st < 0) *err = why;
 done:
   free(g.patch);
   return st;

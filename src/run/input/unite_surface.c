@@ -34,10 +34,9 @@ vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err)
 {
   const struct vg_flow_options flow = vg_boundary_flow_options(b, show);
-  const struct vg_unite_options o = {
-    .subtracts = flow.kind == VG_FLOW_INTERNAL,
-    .stop = { vg_display_stop, show }
-  };
+  const struct vg_unite_options o = { .subtracts = flow.kind ==
+                                                   VG_FLOW_INTERNAL,
+                                      .stop = { vg_display_stop, show } };
   struct vg_unite_report r;
   vg_status st;
 

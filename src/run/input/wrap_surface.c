@@ -142,8 +142,8 @@ done:
   return st;
 }
 
-void vg_boundary_suggest_wrap(const struct vg_boundary *b,
-                              struct vg_display *show, char *text, size_t size)
+void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
+                              char *text, size_t size)
 {
   const struct vg_stop stop = { vg_display_stop, show };
   const size_t *n = b->check.count;
@@ -152,9 +152,10 @@ void vg_boundary_suggest_wrap(const struct vg_boundary *b,
   double wrap = 0;
 
   *text = 0;
-  if (!vg_wrap_is_available(NULL, 0) || b->read->settings.wrap > 0 ||
-      b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||
-      n[VG_DEFECT_NO_BC] == b->check.n_defect)
+  if (b->remedy != VG_REMEDY_NOW) b->remedy = VG_REMEDY_ASKED;
+  if (b->remedy != VG_REMEDY_NOW || !vg_wrap_is_available(NULL, 0) ||
+      b->read->settings.wrap > 0 || b->flow.kind == VG_FLOW_INTERNAL ||
+      n[VG_DEFECT_NOT_FINITE] || n[VG_DEFECT_NO_BC] == b->check.n_defect)
     return;
   vg_display_update(show, "searching for a wrap size", 0, 0);
   if (vg_wrap_suggest(&b->surface, &stop, &wrap, &reason, &why) < 0) return;
