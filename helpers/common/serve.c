@@ -149,8 +149,8 @@ int vg_serve_surface_read(int fd, const struct vg_helper_message *m,
   s->n_tri = m->n[1];
   s->n_more = m->what == VG_HELPER_RECOVER || m->what == VG_HELPER_WRAP ||
                   m->what == VG_HELPER_UNITE
-                ? 0
-                : m->n[2];
+              ? 0
+              : m->n[2];
   n_more *= s->n_more;
   s->x = get_array(fd, s->n_point, sizeof *s->x);
   if (s->x) s->tri = get_array(fd, s->n_tri, sizeof *s->tri);

@@ -459,10 +459,10 @@ static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
 static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                                   const struct vg_cad_options *o)
 {
-  return (struct vg_cad_ask){ what,       kind,     o->unit,
-                              o->patches, n,        o->tolerance,
-                              o->chord,   o->angle, o->least,
-                              0,          0 };
+  return (struct vg_cad_ask){
+    what,     kind, o->unit, o->patches, n, o->tolerance, o->chord, o->angle,
+    o->least, 0,    0,       o->solids,  0
+  };
 }
 
 /* Removes from the view of a STEP file what follows its end mark. */

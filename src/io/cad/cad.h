@@ -48,8 +48,18 @@ enum vg_cad_patches {
   VG_CAD_BY_N
 };
 
+/** Which faces of a file with solids are read. */
+enum vg_cad_solids {
+  VG_CAD_SOLIDS_AUTO, /* All but plane faces that belong to no solid, bound
+                         nothing and touch nothing: datum planes, sketches. */
+  VG_CAD_SOLIDS_ONLY, /* Those of solids. */
+  VG_CAD_SOLIDS_ALL,  /* All. */
+  VG_CAD_SOLIDS_N
+};
+
 struct vg_cad_options {
   int32_t unit;     /* see enum vg_cad_unit */
+  int32_t solids;   /* see enum vg_cad_solids */
   int32_t patches;  /* see enum vg_cad_patches */
   double tolerance; /* gaps between faces up to this size are sewn, in the
                        unit of the result; 0: 1e-6 of the diagonal of the
@@ -65,7 +75,7 @@ struct vg_cad_options {
    * is collapsed, and the limit of division is 1e-7 of the diagonal of the
    * bounding box, or 1e-6 of that of the median face, whichever is larger. */
   double least;
-  double seconds; /* time limit; 0: none */
+  double seconds;   /* time limit; 0: none */
   int keeps_solids; /* 1: solids that touch or overlap are triangulated one by
                        one, each with all its faces; 0: they are united */
   /* Receives lines for a report: the unit, and the faces and edges that were
@@ -98,7 +108,7 @@ struct vg_cad_surface {
    * absolute volumes of connected shells. NAN if an edge does not have exactly
    * two faces. */
   double volume;
-  int unit; /* enum vg_cad_unit, of the result; FILE: not known */
+  int unit;       /* enum vg_cad_unit, of the result; FILE: not known */
   size_t n_solid; /* number of solids of the file */
 };
 #define VG_CAD_SURFACE_INIT                                                    \

@@ -28,6 +28,8 @@ struct vg_cad_ask {
   int32_t leave_apart; /* 1: do not unite solids; 2: and keep the walls that
                           they share */
   int32_t with_volume; /* 1: determine is_solid and volume */
+  int32_t solids;      /* enum vg_cad_solids */
+  int32_t reserved;    /* 0 */
 };
 
 /* Name of the stage that unites solids. */

@@ -601,6 +601,7 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
     drop_copies(model, list, true, talk);
     tolerance = sew(ask, model, talk);
   }
+  if (model.n_solid > 0) drop_loose(ask, model, talk);
   orient(model, tolerance, talk);
   if (ask.with_volume) measure_volume(model);
 }

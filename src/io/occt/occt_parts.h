@@ -97,6 +97,10 @@ size_t count_faces(const TopoDS_Shape &shape, size_t most);
  * faces in linear time. */
 void mend_large_shells();
 
+/** In a file with solids, drop faces that belong to none, as ask.solids
+ * requests, with a note. */
+void drop_loose(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
 /** All faces that were not dropped, as one shape. */
 TopoDS_Compound together(const Model &model);
 

@@ -106,11 +106,10 @@ private:
 void send(const Model &model, const Surface &s, const Talk &talk)
 {
   const vg_cad_tell t = { VG_CAD_TELL_SURFACE, 0, 1 };
-  const vg_cad_counts n = {
-    s.point.size() / 3, s.tri.size() / 3, s.segment.size() / 2,
-    s.patches.size(),   model.is_solid,   model.volume,
-    model.unit,         model.n_solid
-  };
+  const vg_cad_counts n = { s.point.size() / 3,   s.tri.size() / 3,
+                            s.segment.size() / 2, s.patches.size(),
+                            model.is_solid,       model.volume,
+                            model.unit,           model.n_solid };
 
   talk.put(&t, sizeof t);
   talk.put(&n, sizeof n);

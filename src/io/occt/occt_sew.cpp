@@ -2,10 +2,13 @@
 /* Sewing of open edges, orientation of faces, and volume of the model. */
 #include "io/occt/occt_parts.h"
 
+#include "io/cad/cad.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
@@ -354,6 +357,47 @@ std::vector<size_t> find_shells(const Model &model)
     }
   for (size_t i = 0; i < of.size(); i++) of[i] = root(i);
   return of;
+}
+
+/* The shells, as numbers of their first faces, that consist of one plane face
+ * which belongs to no solid. */
+static std::vector<bool> loose_planes(const Model &model)
+{
+  const std::vector<size_t> of = find_shells(model);
+  std::vector<size_t> n(of.size());
+  std::vector<bool> loose(of.size());
+
+  for (size_t i = 0; i < of.size(); i++) n[of[i]]++;
+  for (size_t i = 0; i < of.size(); i++) {
+    const Face &f = model.faces[i];
+
+    loose[i] = n[of[i]] == 1 && f.solid < 0 && !f.shape.IsNull() &&
+               BRepAdaptor_Surface(f.shape, Standard_False).GetType() ==
+                 GeomAbs_Plane;
+  }
+  return loose;
+}
+
+void drop_loose(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  std::vector<bool> drop(model.faces.size());
+  std::string first;
+  size_t n = 0;
+
+  if (ask.solids == VG_CAD_SOLIDS_ALL) return;
+  if (ask.solids == VG_CAD_SOLIDS_AUTO) drop = loose_planes(model);
+  else
+    for (size_t i = 0; i < drop.size(); i++)
+      drop[i] = model.faces[i].solid < 0 && !model.faces[i].shape.IsNull();
+  for (size_t i = 0; i < drop.size(); i++) {
+    if (!drop[i]) continue;
+    if (!n++) first = place(point_of(model.faces[i].shape));
+    model.faces[i].shape.Nullify();
+  }
+  if (n)
+    talk.note(format("%zu faces that belong to no solid were left out, the "
+                     "first at %s (cad_solids all keeps them)",
+                     n, first.c_str()));
 }
 
 void measure_volume(Model &model)

@@ -120,9 +120,9 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
 
 /** Unites closed shells that meet, or with --flow internal cuts them out of the
  * largest one, with a note; `auto` then remeshes the surface. The surface must
- * be in the state that the check left. VG_BLOCKED, with nothing changed: there
- * are none, or they cannot be united. VG_ERR_INPUT if it is not clear whether a
- * shell is a body or the wall of a tunnel. */
+ * be in the state that the check left. VG_BLOCKED, with nothing changed: no
+ * shells meet, or they cannot be united. VG_ERR_INPUT if it is not clear
+ * whether a shell is a body or the wall of a tunnel. */
 vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 

@@ -295,8 +295,8 @@ done:
   return st;
 }
 
-/* Unites bodies that meet. Returns VG_BLOCKED, with nothing changed, if there
- * are none that can be united. */
+/* Unites bodies that meet. Returns VG_BLOCKED, with nothing changed, if no
+ * bodies can be united. */
 static vg_status unite(struct vg_boundary *b, struct vg_display *show,
                        struct vg_error *err)
 {

@@ -45,6 +45,7 @@ struct vg_cad_options vg_options_cad(const struct vg_settings *s,
   if (is_remeshed && !(s->cad.angle > 0)) angle = FINE_ANGLE;
   return (
     struct vg_cad_options){ .unit = s->cad.unit,
+                            .solids = s->cad.solids,
                             .patches = s->cad.patches,
                             .tolerance = s->cad.tolerance,
                             .chord = fmin(chord, CHORD_MOST),

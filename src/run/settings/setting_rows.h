@@ -85,6 +85,10 @@ VG_ROW(WORD, cad, patches, "cad_patches", cad.patches,
   .words = cad_patch_words, .unit = "", .help = "How the faces of a CAD file "
   "form patches: one patch per face, or one for all faces with the same name, "
   "colour, layer or part")
+VG_ROW(WORD, cad, solids, "cad_solids", cad.solids,
+  .words = solid_words, .unit = "", .help = "Faces of a CAD file with solids "
+  "that are read: only those of solids, all, or auto: all but plane faces that "
+  "belong to no solid and touch no other face, such as datum planes")
 VG_ROW(REAL, cad, tolerance, "cad_tolerance", cad.tolerance,
   LENGTH, .help = "Largest distance between edges of CAD faces that are sewn "
   "together; 0: 1e-6 of the diagonal of the model")

@@ -40,6 +40,8 @@ static const char *const order_words[] = { "file", "medit", "upper", "vtk",
                                            NULL };
 static const char *const cad_patch_words[] = { "face",  "name", "colour",
                                                "layer", "part", NULL };
+/* In the order of enum vg_cad_solids. */
+static const char *const solid_words[] = { "auto", "only", "all", NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
 /* In the order of enum vg_decomposition_method, enum vg_partitioner. */
