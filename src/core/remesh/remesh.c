@@ -567,11 +567,10 @@ done:
   return st;
 }
 
-/* Attempt to remesh without making intersecting triangles smaller. If the
- * result is not sound or has many poor triangles, start again from m. */
-static vg_status try_once(struct vg_remesh_job *j, const struct vg_mesh *m,
-                          const struct vg_remesh_options *o, int no_cuts,
-                          struct vg_mesh *out, int *sound, struct vg_error *err)
+/* Attempt to remesh without making intersecting triangles smaller. *poor: the
+ * result is sound, but has many poor triangles; *sound is then 0. */
+static vg_status try_once(struct vg_remesh_job *j, struct vg_mesh *out,
+                          int *sound, int *poor, struct vg_error *err)
 {
   const struct attempt once = { 1, 0, 0 };
   size_t n_bad;
@@ -580,8 +579,49 @@ static vg_status try_once(struct vg_remesh_job *j, const struct vg_mesh *m,
   VG_TRY(make(j, out, &once, sound, err));
   /* Triangles of thin strips are needles. */
   n_bad = j->r.n_bad - (j->along ? j->r.cause[VG_REMESH_STRIP] : 0);
-  if ((double)n_bad > BAD * (double)out->n_tri) *sound = 0;
-  if (!*sound) VG_TRY(vg_job_restart(j, m, o, no_cuts, err));
+  *poor = *sound && (double)n_bad > BAD * (double)out->n_tri;
+  if (*poor) *sound = 0;
+done:
+  return st;
+}
+
+/* Attempts with the borders between patches and the strips of thin edges, from
+ * the given surface m and options o. If they fail, the next attempt starts
+ * without them. Pieces of long edges are left out if they cause poor
+ * triangles. */
+static vg_status try_all_borders(struct vg_remesh_job *j,
+                                 const struct vg_mesh *m,
+                                 const struct vg_remesh_options *o,
+                                 struct vg_mesh *out, int *sound,
+                                 struct vg_error *err)
+{
+  int poor;
+  vg_status st;
+
+  VG_TRY(try_once(j, out, sound, &poor, err));
+  if (poor && j->is_cut) {
+    VG_TRY(vg_job_restart(j, m, o, 1, err));
+    VG_TRY(try_once(j, out, sound, &poor, err));
+  }
+  if (*sound) goto done;
+  j->frees_borders = j->closes_edges = 1;
+  VG_TRY(vg_job_restart(j, m, o, j->no_cuts, err));
+done:
+  return st;
+}
+
+/* The same without borders and strips; a failure is blamed on the pieces of
+ * long edges. */
+static vg_status try_pieces(struct vg_remesh_job *j, const struct vg_mesh *m,
+                            const struct vg_remesh_options *o,
+                            struct vg_mesh *out, int *sound,
+                            struct vg_error *err)
+{
+  int poor;
+  vg_status st;
+
+  VG_TRY(try_once(j, out, sound, &poor, err));
+  if (!*sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
 done:
   return st;
 }
@@ -599,15 +639,12 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   /* No change within the tolerance separates such parts. */
   if (hopeless && j->r.crossing_depth > DEEP * j->r.tolerance)
     return refuse_crossing(j, j->r.crossing_at, err);
-  /* With the borders between patches and the strips of thin edges. */
-  if (!hopeless && (j->kept || j->along || j->strips.has_edges)) {
-    j->frees_borders = j->closes_edges = 1;
-    VG_TRY(try_once(j, m, o, 0, out, &sound, err));
-  }
+  if (!hopeless && (j->kept || j->along || j->strips.has_edges))
+    VG_TRY(try_all_borders(j, m, o, out, &sound, err));
   /* Larger sizes at midpoints of long feature edges may cause intersections, or
    * prevent needles next to a sharp edge of zero thickness from being split. */
   if (!sound && !hopeless && j->is_cut)
-    VG_TRY(try_once(j, m, o, 1, out, &sound, err));
+    VG_TRY(try_pieces(j, m, o, out, &sound, err));
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
                                !j->strips.n && round == rounds ? 1 : 0 };
