@@ -24,8 +24,14 @@ fail() {
   echo "--- err"; head -20 err
 }
 
+unites=1
+"$program" --version --verbose | grep -q "vanguard-wrap not found" && unites=0
+
 while IFS='|' read -r command file verdict phrase; do
   count=$((count + 1))
+  if [ $unites = 0 ] && [ "$phrase" = "were united" ]; then
+    verdict=refused phrase="needs vanguard-wrap"
+  fi
   timeout 60 "$program" $command "$file" >out 2>err </dev/null
   status=$?
   expected=1

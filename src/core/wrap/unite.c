@@ -309,8 +309,9 @@ static vg_status unite_set(struct work *w, uint32_t root, struct vg_mesh *to,
   vg_status st;
 
   VG_TRY(make_request(w, root, &q, err));
-  VG_TRY(
-    vg_wrap_unite(&q.mesh, w->o->subtracts, &w->o->stop, &united, &from, err));
+  st = vg_wrap_unite(&q.mesh, w->o->subtracts, &w->o->stop, &united, &from,
+                     err);
+  if (st != VG_OK) goto done;
   VG_TRY(append(w, &united, from, &q, to, err));
 done:
   request_release(&q);
@@ -369,6 +370,18 @@ static void report(const struct work *w, struct vg_unite_report *r)
   }
 }
 
+/* Without the helper another surface would be made, or none. */
+static vg_status check_helper(struct vg_error *err)
+{
+  char why[200];
+
+  if (vg_wrap_is_available(why, sizeof why)) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "closed parts of the surface cross or touch each other, and "
+                 "uniting them needs vanguard-wrap: %s",
+                 why);
+}
+
 vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
                    const struct vg_unite_options *o, struct vg_unite_report *r,
                    struct vg_error *err)
@@ -379,8 +392,7 @@ vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
   size_t n_rest;
   vg_status st;
 
-  if (m->n_quad || !m->n_tri || !vg_wrap_is_available(NULL, 0))
-    return VG_BLOCKED;
+  if (m->n_quad || !m->n_tri) return VG_BLOCKED;
   VG_TRY(vg_edges_build(&e, m->n_point, m->n_tri, (const uint32_t(*)[3])m->tri,
                         NULL, 0, err));
   VG_TRY(find_shells(&w, &e, err));
@@ -389,12 +401,12 @@ vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
     st = VG_BLOCKED;
     goto done;
   }
+  VG_TRY(check_helper(err));
   VG_TRY(take_rest(&w, &made, err));
   n_rest = made.n_tri;
   for (uint32_t i = 0; i < w.n_shell; i++) {
     if (vg_root_of(w.set, i) != i || w.members[i] < 2) continue;
     st = unite_set(&w, i, &made, err);
-    if (st == VG_ERR_GEOMETRY) st = VG_BLOCKED;
     if (st != VG_OK) goto done;
   }
   report(&w, r);

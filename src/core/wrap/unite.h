@@ -47,8 +47,9 @@ struct vg_unite_report {
  * @param r      set on success
  *
  * Returns VG_BLOCKED, with m unchanged, if no shells meet, if one of those that
- * do is open, not manifold or intersects itself, if CGAL cannot unite them, or
- * without vanguard-wrap. VG_ERR_STOPPED, VG_ERR_MEMORY. One thread, about 10 us
+ * do is open, not manifold or intersects itself, or if the surface of the union
+ * is not a manifold. VG_ERR_UNSUPPORTED without vanguard-wrap; VG_ERR_GEOMETRY
+ * if it crashes; VG_ERR_STOPPED, VG_ERR_MEMORY. One thread, about 10 us
  * per triangle. Re-entrant. */
 vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
                    const struct vg_unite_options *o, struct vg_unite_report *r,

@@ -171,7 +171,10 @@ vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
   vg_status st = ask(&r, m, 0, NULL, stop, err);
 
   if (st < 0) return st;
-  VG_TRY(receive(&r, VG_HELPER_SURFACE, err));
+  st = receive(&r, VG_HELPER_SURFACE, err);
+  if (st < 0 && r.m.what == VG_HELPER_FAILED && r.m.option == VG_HELPER_ERROR)
+    st = VG_BLOCKED;
+  if (st != VG_OK) goto done;
   if (r.m.what != VG_HELPER_SURFACE) VG_TRY(damaged(err));
   st = vg_wrap_receive_surface(&r.link, r.m.n[0], r.m.n[1], out, err);
   if (st == VG_BLOCKED) st = explain(&r, err);

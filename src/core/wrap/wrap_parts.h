@@ -29,7 +29,7 @@ vg_status vg_wrap_receive_surface(struct vg_link *l, uint64_t n_point,
  *
  * @param out   empty; released by the caller, also on failure
  * @param from  out: [out->n_tri] triangle of m; free() it
- * VG_ERR_GEOMETRY: CGAL cannot unite them. */
+ * VG_BLOCKED: the surface of the union is not a manifold. */
 vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
                         const struct vg_stop *stop, struct vg_mesh *out,
                         uint32_t **from, struct vg_error *err);

@@ -37,11 +37,13 @@ vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
   const struct vg_unite_options o = { .subtracts = flow.kind ==
                                                    VG_FLOW_INTERNAL,
                                       .stop = { vg_display_stop, show } };
+  struct vg_error why = VG_ERROR_INIT;
   struct vg_unite_report r;
   vg_status st;
 
   vg_display_update(show, "union of bodies", 0, 0);
-  st = vg_unite(&b->surface, &b->check, &o, &r, err);
+  st = vg_unite(&b->surface, &b->check, &o, &r, &why);
+  if (st < 0) return vg_fail(err, st, "%s: %s", b->read->files.stem, why.text);
   if (st != VG_OK) return st;
   if (r.is_ambiguous && flow.kind == VG_FLOW_UNKNOWN)
     return refuse_ambiguous(b, &r, err);

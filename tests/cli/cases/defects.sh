@@ -49,9 +49,13 @@ cat >cross.ugrid <<'END'
 1 1 1 1 2 2 2 2
 END
 vanguard check -q cross.ugrid
-exits 0
-says out "were united: 2 shells became 1"
-says out "no defects"
+if grep -q "needs vanguard-wrap" err; then
+  exits 1
+else
+  exits 0
+  says out "were united: 2 shells became 1"
+  says out "no defects"
+fi
 
 # A duplicate triangle, the second one reversed and in another solid: one
 # finding, which the repair removes.
