@@ -16,6 +16,7 @@
 #include "core/wrap/wrap_parts.h"
 
 #define INSIDE 0.5 /* S83: a shell keeps less of its area: it is inside */
+#define CROWD 64   /* triangles at an edge: more are not examined */
 #define FULL 0.75  /* S83: of its bounding box: a tunnel or a room */
 
 struct shell {
@@ -103,7 +104,7 @@ static void join(struct work *w, const struct vg_edges *e, size_t i)
   const uint32_t *half = e->half + e->start[i];
   const uint32_t n = vg_edges_count(e, i);
 
-  for (uint32_t k = 0; k < n; k++) {
+  for (uint32_t k = 0; k < n && n <= CROWD; k++) {
     const uint32_t g = across(w->m, half, n, half[k]);
 
     if (g != UINT32_MAX) vg_union(w->up, half[k] / 3, g / 3);
@@ -147,7 +148,7 @@ static void examine_edge(struct work *w, const struct vg_edges *e, size_t i)
     const uint32_t own = w->of[half[a] / 3];
     int along = 0, against = 0;
 
-    for (uint32_t b = 0; b < n; b++) {
+    for (uint32_t b = 0; b < n && n <= CROWD; b++) {
       const uint32_t other = w->of[half[b] / 3];
 
       if (other != own) vg_union(w->set, own, other);
@@ -214,14 +215,15 @@ static void add_shell(const struct work *w, uint32_t shell, uint32_t *number,
                       struct request *q)
 {
   const struct vg_mesh *m = w->m;
-  const int turns = w->shell[shell].volume < 0;
+  const struct shell *own = &w->shell[shell];
+  const size_t begin = q->mesh.n_tri, end = begin + own->n_tri;
 
-  for (size_t t = w->shell[shell].first; t < m->n_tri; t++) {
+  for (size_t t = own->first; q->mesh.n_tri < end; t++) {
     uint32_t *v = q->mesh.tri[q->mesh.n_tri];
 
     if (w->of[t] != shell) continue;
     for (int k = 0; k < 3; k++) {
-      const uint32_t p = m->tri[t][turns ? 2 - k : k];
+      const uint32_t p = m->tri[t][own->volume < 0 ? 2 - k : k];
 
       if (number[p] == UINT32_MAX) {
         number[p] = (uint32_t)q->mesh.n_point;
@@ -231,9 +233,8 @@ static void add_shell(const struct work *w, uint32_t shell, uint32_t *number,
     }
     q->from[q->mesh.n_tri++] = (uint32_t)t;
   }
-  for (size_t t = w->shell[shell].first; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && w->of[t] == shell; k++)
-      number[m->tri[t][k]] = UINT32_MAX;
+  for (size_t i = begin; i < end; i++)
+    for (int k = 0; k < 3; k++) number[m->tri[q->from[i]][k]] = UINT32_MAX;
 }
 
 static vg_status make_request(const struct work *w, uint32_t root,
