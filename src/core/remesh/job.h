@@ -31,7 +31,7 @@ struct vg_remesh_job {
                                NULL. */
   double *stretch;          /* [3 n_tri] options.stretch for strips.mesh. */
   double *along;            /* [3 given->n_tri] The same, with the edges along
-                               thin strips; NULL: there are none. */
+                               thin strips; NULL: no thin strips. */
   double jag;               /* Tolerance of feature curves; independent of the
                                scale. */
   double far;               /* Sizes above this occur on an outer boundary only;

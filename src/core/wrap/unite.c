@@ -82,7 +82,7 @@ static int are_copies(const uint32_t a[3], const uint32_t b[3])
 
 /* The next triangle of the shell across an edge: the only one in the opposite
  * direction that is not a copy. Copies are the two sides of a wall that bodies
- * share. UINT32_MAX: there is none, or more than one. */
+ * share. UINT32_MAX: no such triangle, or more than one. */
 static uint32_t across(const struct vg_mesh *m, const uint32_t *half,
                        uint32_t n, uint32_t h)
 {
