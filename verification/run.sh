@@ -83,11 +83,11 @@ low_boom         supersonic/low_boom_sst_full.lb8.ugrid.xz           wall - -
 tmx1242          supersonic/tmx1242_wing_body.lb8.ugrid.xz           wall - -
 tnd6480          supersonic/tnd6480_delta_wing_body.lb8.ugrid.xz     wall - -
 drivaer          dirty/drivaer_fastback_body.obj.gz                  dirty - -
-f16_parts        dirty/f16_components_overlapping.stl.xz             dirty - q
+f16_parts        dirty/f16_components_overlapping.stl.xz             wall - q
 motorbike        dirty/motorbike.obj.gz                              dirty - -
 cfdmesh_concorde dirty/openvsp_cfdmesh_concorde.tri.xz               dirty - q
 cfdmesh_lowboom  dirty/openvsp_cfdmesh_lowboom.tri.xz                dirty - q
-three_plugs      dirty/three_plugs.bin.tri.xz                        dirty - q
+three_plugs      dirty/three_plugs.bin.tri.xz                        wall - q
 toy_airplane     dirty/toy_airplane_with_holes.obj.xz                dirty - q
 "
 
