@@ -139,11 +139,9 @@ absent c/cut.b8.ugrid
 vanguard check empty.step
 exits 1
 says err "empty.step"
-vanguard mesh -q -p "$cad/crossing_faces.brep" --out x
+vanguard check "$cad/crossing_faces.brep" --surface-size 1
 exits 0
 says out "were united: 2 shells became 1"
-vanguard check "$cad/crossing_faces.brep"
-exits 0
 says out "volume 10.125,"
 vanguard mesh -q -p wing.step --cad-angle 1 --cad-chord 1e-7 \
   --cad-seconds 0.3 --out y
