@@ -6,7 +6,7 @@ octahedron >two.obj
 octahedron | sed 's/^g .*/g other/' | awk '$1 == "v" { print "v", $2 + 0.7, $3,
   $4; next } $1 == "f" { print "f", $2 + 6, $3 + 6, $4 + 6; next } { print }' \
   >>two.obj
-vanguard mesh -q -p two.obj --out plain
+vanguard check two.obj
 exits 0
 says out "were united: 2 shells became 1, 16 triangles became"
 vanguard mesh -q -p two.obj --wrap 0.2 --out one
