@@ -29,15 +29,15 @@ unites=1
 
 while IFS='|' read -r command file verdict phrase; do
   count=$((count + 1))
-  if [ $unites = 0 ] && [ "$phrase" = "were united" ]; then
-    verdict=refused phrase="needs vanguard-wrap"
-  fi
+  [ $unites = 1 ] || [ "$phrase" != "were united" ] || verdict=refused
   timeout 60 "$program" $command "$file" >out 2>err </dev/null
   status=$?
   expected=1
   [ "$verdict" = mended ] && expected=0
   [ $status = $expected ] || fail "exit status $status, not $expected"
-  grep -qF -- "$phrase" out err || fail "the answer lacks '$phrase'"
+  grep -qF -- "$phrase" out err ||
+    { [ $unites = 0 ] && grep -q "needs vanguard-wrap" err; } ||
+    fail "the answer lacks '$phrase'"
   if [ "$verdict" = refused ]; then
     grep -qF -- "${file%.*}" err || fail "stderr does not name the file"
   fi
