@@ -610,22 +610,6 @@ done:
   return st;
 }
 
-/* The same without borders and strips; a failure is blamed on the pieces of
- * long edges. */
-static vg_status try_pieces(struct vg_remesh_job *j, const struct vg_mesh *m,
-                            const struct vg_remesh_options *o,
-                            struct vg_mesh *out, int *sound,
-                            struct vg_error *err)
-{
-  int poor;
-  vg_status st;
-
-  VG_TRY(try_once(j, out, sound, &poor, err));
-  if (!*sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
-done:
-  return st;
-}
-
 static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
                         const struct vg_remesh_options *o, struct vg_mesh *out,
                         struct vg_error *err)
@@ -633,7 +617,7 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
   const int rounds = j->r.n_crossing[0] ? 1 : ROUNDS;
   const int hopeless = j->r.n_crossing[1] > 0;
   size_t left = 0;
-  int sound = 0;
+  int sound = 0, poor;
   vg_status st = VG_OK;
 
   /* No change within the tolerance separates such parts. */
@@ -643,8 +627,10 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
     VG_TRY(try_all_borders(j, m, o, out, &sound, err));
   /* Larger sizes at midpoints of long feature edges may cause intersections, or
    * prevent needles next to a sharp edge of zero thickness from being split. */
-  if (!sound && !hopeless && j->is_cut)
-    VG_TRY(try_pieces(j, m, o, out, &sound, err));
+  if (!sound && !hopeless && j->is_cut) {
+    VG_TRY(try_once(j, out, &sound, &poor, err));
+    if (!sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
+  }
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
                                !j->strips.n && round == rounds ? 1 : 0 };

@@ -122,7 +122,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
  * largest one, with a note; `auto` then remeshes the surface. The surface must
  * be in the state that the check left. VG_BLOCKED, with nothing changed: no
  * shells meet, or they cannot be united. VG_ERR_INPUT if it is not clear
- * whether a shell is a body or the wall of a tunnel. */
+ * whether a shell is a body or the wall of a tunnel; otherwise as vg_unite. */
 vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 
