@@ -98,7 +98,8 @@ static void change(struct scene *s)
   for (int i = 0; i < 5; i++) {
     assert_int_equal(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, &err),
                      VG_OK);
-    assert_int_equal(vg_pass_split(w, VG_WORK_LONG, 0, &n, &err), VG_OK);
+    assert_int_equal(vg_pass_split(w, VG_WORK_LONG, VG_SPLIT_ALL, &n, &err),
+                     VG_OK);
     vg_pass_smooth(w, 2);
   }
   for (int i = 0; i < 3; i++) {

@@ -231,7 +231,7 @@ def summary(results):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
+    parser = argparse.ArgumentParser(usage=__doc__.replace("%", "%%"))
     parser.add_argument("--data", required=True)
     parser.add_argument("--vanguard", default=os.path.join(
         ROOT, "build/release/bin/vanguard"))

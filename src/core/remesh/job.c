@@ -29,10 +29,16 @@
  * edge and of other edges. */
 #define LEAP 10.0
 #define LEAP_INSIDE 4.0
+/* S47: largest ratio of the expected numbers of triangles after and before
+ * feature edges are split, and other edges are bisected once. */
+#define GAIN 0.7
+#define GAIN_INSIDE 0.99
 #define CUTS 256        /* most pieces of a feature edge */
 #define PLANE 1e-12     /* 1 - cosine between the triangles of a plane face */
 #define ROUNDS 20       /* most bisections of another edge */
 #define MOST_CUT 200000 /* triangles above which other edges are not split */
+#define ALONG 4.0       /* S47: triangles along an edge of a feature curve */
+#define SAME 1e-3       /* relative difference of sizes that are equal */
 #define TRIANGLES 3e8   /* limit of the estimated number of new triangles */
 
 static double length_of(const struct vg_mesh *m, const uint8_t *outer)
@@ -110,28 +116,61 @@ done:
   return st;
 }
 
-/* Refuse sizes that would give more triangles than any computer can hold. The
- * usual reason is another unit of length. */
-static vg_status check_number(const struct vg_remesh_job *j,
-                              struct vg_error *err)
+static double edge_length(const struct vg_ref *r, uint32_t h)
+{
+  return vg_distance(r->point[vg_ref_from(r, h)], r->point[vg_ref_to(r, h)]);
+}
+
+/* Mean of 1/h over an edge with sizes h that are a and b at its ends. */
+static double mean_inverse(double a, double b)
+{
+  return fabs(b - a) > SAME * a ? log(b / a) / (b - a) : 2 / (a + b);
+}
+
+/* Mean of 1/h^2 over a triangle with sizes h at its corners: twice the second
+ * divided difference of -log h (Hermite-Genocchi formula). */
+static double mean_inverse2(const double h[3])
+{
+  const double lo = fmin(h[0], fmin(h[1], h[2]));
+  const double hi = fmax(h[0], fmax(h[1], h[2]));
+  const double sum = h[0] + h[1] + h[2], mid = sum - lo - hi;
+
+  if (!(hi - lo > SAME * hi)) return 9 / (sum * sum);
+  return 2 * (mean_inverse(lo, mid) - mean_inverse(mid, hi)) / (hi - lo);
+}
+
+/* Number of new triangles that the sizes request: those that fill the area, and
+ * rows on both sides of the feature curves. */
+static double expected_number(const struct vg_remesh_job *j)
 {
   const struct vg_ref *r = &j->ref;
-  double n = 0, size;
+  double n = 0;
 
-  for (size_t t = 0; t < r->n_tri; t++) {
+  for (uint32_t t = 0; t < r->n_tri; t++) {
+    const uint32_t *v = r->tri[t];
+    const double size[3] = { r->size[v[0]], r->size[v[1]], r->size[v[2]] };
     double x[3];
 
     vg_cross(r->shape[t].u, r->shape[t].v, x);
-    size = (r->size[r->tri[t][0]] + r->size[r->tri[t][1]] +
-            r->size[r->tri[t][2]]) /
-           3;
-    n += vg_norm(x) / (0.8660254037844386 * size * size);
+    n += vg_norm(x) / 0.8660254037844386 * mean_inverse2(size);
+    for (uint32_t k = 0; k < 3; k++)
+      if (j->curves.line[3 * t + k])
+        n += ALONG * edge_length(r, 3 * t + k) *
+             mean_inverse(size[k], size[(k + 1) % 3]);
   }
-  if (n < TRIANGLES) return VG_OK;
+  return n;
+}
+
+/* Refuse sizes that would give more triangles than any computer can hold. The
+ * usual reason is another unit of length. */
+static vg_status check_number(struct vg_remesh_job *j, struct vg_error *err)
+{
+  j->n_expected = expected_number(j);
+  if (j->n_expected < TRIANGLES) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "the remeshed surface would have some %.2g triangles; check "
                  "that sizes and tolerance are in the unit of the surface",
-                 n);
+                 j->n_expected);
 }
 
 static const double *cap_of(const struct vg_remesh_job *j)
@@ -402,11 +441,6 @@ static double leap(const struct vg_remesh_job *j, uint32_t h, double *grown)
   return 2 * *grown / (a + b);
 }
 
-static double edge_length(const struct vg_ref *r, uint32_t h)
-{
-  return vg_distance(r->point[vg_ref_from(r, h)], r->point[vg_ref_to(r, h)]);
-}
-
 /* Number of pieces into which feature edge h must be split. */
 static int pieces(const struct vg_remesh_job *j, uint32_t h)
 {
@@ -536,15 +570,24 @@ done:
   return st;
 }
 
-static vg_status cut_long_edges(struct vg_remesh_job *j, struct vg_error *err)
+static int has_long_lines(const struct vg_remesh_job *j)
 {
-  int any = 0;
+  for (uint32_t h = 0; h < 3 * j->ref.n_tri; h++)
+    if (j->curves.line[h] && pieces(j, h) > 1) return 1;
+  return 0;
+}
+
+/* Bisect edges inside plane faces as long as this saves triangles. */
+static vg_status bisect_edges(struct vg_remesh_job *j, struct vg_error *err)
+{
+  int any = 1;
   vg_status st = VG_OK;
 
-  if (!j->no_cuts) VG_TRY(cut_edges(j, 1, &j->is_cut, err));
-  for (int i = 0; i < ROUNDS && j->whole->n_tri < MOST_CUT; i++) {
+  for (int i = 0; i < ROUNDS && any && j->whole->n_tri < MOST_CUT; i++) {
+    const double n = j->n_expected;
+
     VG_TRY(cut_edges(j, 0, &any, err));
-    if (!any) break;
+    if (any && j->n_expected > GAIN_INSIDE * n) break;
   }
 done:
   return st;
@@ -579,7 +622,9 @@ static vg_status keep_borders(struct vg_remesh_job *j, struct vg_error *err)
 
 /* --- preparation ---------------------------------------------------------- */
 
-vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
+/* Prepare j, in which only the surface and options are set. */
+static vg_status prepare(struct vg_remesh_job *j, int cuts,
+                         struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
   vg_status st;
@@ -595,13 +640,15 @@ vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
   if (o->is_reference && !j->looks) VG_TRY(clean(j, err));
   VG_TRY(keep_fixed(j, err));
   VG_TRY(vg_job_set_reference(j, !j->looks && !o->fixed, err));
-  if (!j->looks && !o->fixed) VG_TRY(cut_long_edges(j, err));
+  if (j->looks || o->fixed) goto done;
+  if (cuts) VG_TRY(cut_edges(j, 1, &j->is_cut, err));
+  VG_TRY(bisect_edges(j, err));
 done:
   return st;
 }
 
-vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
-                         const struct vg_remesh_options *o, int no_cuts,
+static vg_status restart(struct vg_remesh_job *j, const struct vg_mesh *m,
+                         const struct vg_remesh_options *o, int cuts,
                          struct vg_error *err)
 {
   vg_job_release(j);
@@ -613,8 +660,47 @@ vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
   j->given = j->whole = m;
   j->o = o;
   j->is_cut = 0;
+  return prepare(j, cuts, err);
+}
+
+/* Split feature edges if this saves enough triangles. */
+static vg_status try_to_cut(struct vg_remesh_job *j, const struct vg_mesh *m,
+                            const struct vg_remesh_options *o,
+                            struct vg_error *err)
+{
+  const double n = j->n_expected;
+  vg_status st;
+
+  VG_TRY(restart(j, m, o, 1, err));
+  if (j->is_cut && j->n_expected > GAIN * n) VG_TRY(restart(j, m, o, 0, err));
+done:
+  return st;
+}
+
+vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
+{
+  const struct vg_mesh *m = j->whole;
+  const struct vg_remesh_options *o = j->o;
+  vg_status st;
+
+  VG_TRY(prepare(j, 0, err));
+  if (!j->looks && !o->fixed && !j->no_cuts && has_long_lines(j))
+    VG_TRY(try_to_cut(j, m, o, err));
+done:
+  return st;
+}
+
+vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
+                         const struct vg_remesh_options *o, int no_cuts,
+                         struct vg_error *err)
+{
+  vg_status st;
+
   j->no_cuts = no_cuts;
-  return vg_job_prepare(j, err);
+  VG_TRY(restart(j, m, o, 0, err));
+  if (!no_cuts && has_long_lines(j)) VG_TRY(try_to_cut(j, m, o, err));
+done:
+  return st;
 }
 
 void vg_job_release(struct vg_remesh_job *j)

@@ -43,6 +43,7 @@ struct vg_remesh_job {
                         input triangles that are kept unchanged; NULL: none.
                         Strips are then not closed. */
   size_t n_keep;     /* Number of such points. */
+  double n_expected; /* Number of new triangles by the sizes. */
   int is_all_kept;   /* The last search found no further input triangles to
                         keep. */
   size_t n_flat;     /* Swapped edges of flat triangles. */

@@ -22,6 +22,7 @@
 #define SWAPPED_OF 200
 #define GIVEN_WITHIN                                                           \
   0.02                /* S73: of a step: an input point this close is used */
+#define MUCH 2.0      /* S84: of the longest edge: much too long */
 #define LONGEST 0.999 /* S74: of the length: sides below count as shorter */
 /* S75: smoothing. The weight of a triangle is 1 / (shape + SHAPE_FLOOR). */
 #define SHAPE_FLOOR 0.05
@@ -325,26 +326,47 @@ static int is_longest(const struct vg_tris *w, uint32_t h)
   return 1;
 }
 
-vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
-                        struct vg_error *err)
+/* Must edge h wait? If an edge that is not the longest is split, needles are
+ * cut along, not across. The longest edge is the next to be split, unless it is
+ * at the border of a block:
+ *
+ *      o--------------------o     border: the needle below cannot be split
+ *       `-.__             .'
+ *            `-.__      .'        ever thinner needles if the shorter of its
+ *                 `-._.'          long edges is
+ *                     o
+ */
+static int waits(const struct vg_tris *w, uint32_t h, double most,
+                 enum vg_split which)
 {
-  const int look = across ? VG_WORK_ACROSS : VG_WORK_SPLITS;
+  return (which == VG_SPLIT_LONGEST ||
+          (which == VG_SPLIT_NEAR && vg_tris_ratio(w, h) > MUCH * most)) &&
+         !is_longest(w, h);
+}
+
+vg_status vg_pass_split(struct vg_tris *w, double most, enum vg_split which,
+                        size_t *n, struct vg_error *err)
+{
+  const int one = which == VG_SPLIT_LONGEST;
+  const int look = one ? VG_WORK_ACROSS : VG_WORK_SPLITS;
   vg_status st = VG_OK;
   struct vg_key *key = NULL;
   size_t n_key, done = 1;
 
   assert(most > 0 && n);
   *n = 0;
-  for (int round = 0; done && round < (across ? 1 : ROUNDS); round++) {
+  for (int round = 0; done && round < (one ? 1 : ROUNDS); round++) {
     done = 0;
     free(key);
     VG_TRY(edges_by_ratio(w, look, 0, most, 1, &key, &n_key, err));
     for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
-      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) <= most ||
-          (across && !is_longest(w, h)))
+      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) <= most) continue;
+      if (waits(w, h, most, which)) {
+        w->point[vg_tris_from(w, h)].changed = ++w->clock; /* list it again */
         continue;
+      }
       done += vg_tris_split(w, h, NULL) != VG_REF_NONE;
     }
     *n += done;

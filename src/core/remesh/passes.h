@@ -13,17 +13,23 @@ vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err);
 /** Remove the marked points of curves. */
 void vg_pass_curves(struct vg_tris *w);
 
+/** Which edges may be split. */
+enum vg_split {
+  VG_SPLIT_ALL,
+  VG_SPLIT_NEAR,    /* Edges that are much too long wait until they are the
+                       longest of both their triangles. */
+  VG_SPLIT_LONGEST, /* Only edges that are, in a single round. */
+};
+
 /** vg_pass_collapse collapses edges shorter than `least` target lengths, the
  * shortest first; vg_pass_split splits those longer than `most`, the longest
  * first. Each is followed by swaps.
  *
- * @param n       out: number of changes
- * @param across  split only edges that are the longest of both their triangles,
- *                in a single round */
+ * @param n  out: number of changes */
 vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
                            size_t *n, struct vg_error *err);
-vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
-                        struct vg_error *err);
+vg_status vg_pass_split(struct vg_tris *w, double most, enum vg_split which,
+                        size_t *n, struct vg_error *err);
 
 /** Swap edges while that improves triangles. Returns the number of swaps. */
 size_t vg_pass_swap(struct vg_tris *w);

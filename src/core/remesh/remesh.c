@@ -32,6 +32,7 @@
        the neighbourhood */
 #define DEEP 3.0  /* S31: of the tolerance: depth of hopeless intersections */
 #define MENDS 4   /* in each attempt: smaller triangles at intersections */
+#define FEW 64    /* intersections that are mended in the first attempts */
 #define SPOTS 256 /* most spots added at a time */
 #define SPOT_LEAST 0.0625 /* S34: of h_min: least size at a spot */
 #define FLAT 0.1 /* of the tolerance: flat triangles swapped at the end */
@@ -41,7 +42,8 @@
 #define PHASES 2    /* of blocks, before the whole surface */
 #define EVEN 2      /* sweeps along curves in each round in a metric */
 #define ROUGH 1     /* rounds of smoothing on levels with enlarged sizes */
-#define HALVINGS 16 /* most rounds of splitting needles */
+#define HALVINGS 64 /* most rounds of splitting needles */
+#define NEAR 2      /* rounds in which much too long edges wait */
 #define POLISH2                                                                \
   0.46 /* S21: (sin 42.7 degrees)^2: below, triangles are polished */
 #define POLISHES 2 /* rounds, and one more after the last smoothing */
@@ -143,7 +145,8 @@ static vg_status halve(void *user, struct vg_tris *w, struct vg_error *err)
   VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   /* Halves of needles are collapsed before they are split again. */
   for (int i = 0; n && i < HALVINGS; i++) {
-    VG_TRY(vg_pass_split(w, 2 * VG_WORK_SHORT * VG_WORK_LONG, 1, &n, err));
+    VG_TRY(vg_pass_split(w, 2 * VG_WORK_SHORT * VG_WORK_LONG, VG_SPLIT_LONGEST,
+                         &n, err));
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   }
 done:
@@ -158,10 +161,13 @@ static vg_status change_block(void *user, struct vg_tris *w,
 
   VG_TRY(halve(user, w, err));
   for (int i = 0; i < 4; i++) {
+    const int near = i < NEAR || w->is_block;
+
     if (w->field) vg_pass_even(w, EVEN);
     vg_pass_smooth(w, 1);
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
-    VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
+    VG_TRY(vg_pass_split(w, VG_WORK_LONG, near ? VG_SPLIT_NEAR : VG_SPLIT_ALL,
+                         &n, err));
   }
   vg_pass_smooth(w, 2);
   vg_pass_swap(w);
@@ -204,7 +210,7 @@ static vg_status change_roughly(void *user, struct vg_tris *w,
     vg_pass_even(w, EVEN);
     vg_pass_smooth(w, 1);
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
-    VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
+    VG_TRY(vg_pass_split(w, VG_WORK_LONG, VG_SPLIT_NEAR, &n, err));
   }
   vg_pass_smooth(w, 1);
 done:
@@ -474,11 +480,13 @@ done:
 }
 
 /* One attempt: how often intersecting triangles are made smaller, whether
- * failure is final, and the width of the neighbourhood in which input triangles
- * are kept next, in edges of the intersecting triangles. */
+ * failure is final, the width of the neighbourhood in which input triangles are
+ * kept next, in edges of the intersecting triangles, and the largest number of
+ * intersections that are worth this; 0: any number. */
 struct attempt {
   int mends, last;
   double rings;
+  size_t few;
 };
 
 /* Remesh once. Intersecting triangles are made smaller; if that does not help,
@@ -527,6 +535,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
     VG_TRY(swap_flat(j, out, err));
     VG_TRY(
       is_sound(j, out, a->last && is_end, is_end ? a->rings : 0, sound, err));
+    if (a->few && j->n_fault[1] > a->few) break;
     if (!mend || *sound || j->n_fault[1] <= j->n_fault[0]) continue;
     /* Smaller triangles have caused more intersections. */
     if (a->rings > 0 && !is_end)
@@ -554,7 +563,7 @@ static vg_status keep(struct vg_remesh_job *j, struct vg_mesh *out,
 
   j->n_source = j->o->n_source;
   for (int i = 1; !sound; i++) {
-    const struct attempt a = { 1, i == KEEPS || j->is_all_kept, 1 << i };
+    const struct attempt a = { 1, i == KEEPS || j->is_all_kept, 1 << i, 0 };
 
     VG_TRY(make(j, out, &a, &sound, err));
   }
@@ -567,73 +576,56 @@ done:
   return st;
 }
 
-/* Attempt to remesh without making intersecting triangles smaller. *poor: the
- * result is sound, but has many poor triangles; *sound is then 0. */
+/* Attempt to remesh; only few intersections are mended. *poor: the result
+ * has many poor triangles. */
 static vg_status try_once(struct vg_remesh_job *j, struct vg_mesh *out,
                           int *sound, int *poor, struct vg_error *err)
 {
-  const struct attempt once = { 1, 0, 0 };
+  const struct attempt once = { MENDS, 0, 0, FEW };
   size_t n_bad;
   vg_status st;
 
   VG_TRY(make(j, out, &once, sound, err));
   /* Triangles of thin strips are needles. */
   n_bad = j->r.n_bad - (j->along ? j->r.cause[VG_REMESH_STRIP] : 0);
-  *poor = *sound && (double)n_bad > BAD * (double)out->n_tri;
-  if (*poor) *sound = 0;
+  *poor = (double)n_bad > BAD * (double)out->n_tri;
 done:
   return st;
 }
 
-/* Attempts with the borders between patches and the strips of thin edges, from
- * the given surface m and options o. If they fail, the next attempt starts
- * without them. Pieces of long edges are left out if they cause poor
- * triangles. */
-static vg_status try_all_borders(struct vg_remesh_job *j,
-                                 const struct vg_mesh *m,
-                                 const struct vg_remesh_options *o,
-                                 struct vg_mesh *out, int *sound,
-                                 struct vg_error *err)
+/* Attempt to remesh the given surface m with options o as prepared. Larger
+ * sizes at midpoints of long feature edges may cause intersections or poor
+ * triangles, or prevent needles next to a sharp edge of zero thickness from
+ * being split: the attempt is then repeated without them. */
+static vg_status try_cuts(struct vg_remesh_job *j, const struct vg_mesh *m,
+                          const struct vg_remesh_options *o,
+                          struct vg_mesh *out, int *sound, struct vg_error *err)
 {
   int poor;
   vg_status st;
 
   VG_TRY(try_once(j, out, sound, &poor, err));
-  if (poor && j->is_cut) {
-    VG_TRY(vg_job_restart(j, m, o, 1, err));
-    VG_TRY(try_once(j, out, sound, &poor, err));
-  }
-  if (*sound) goto done;
-  j->frees_borders = j->closes_edges = 1;
-  VG_TRY(vg_job_restart(j, m, o, j->no_cuts, err));
+  if (!j->is_cut || (*sound && !poor)) goto done;
+  *sound = 0;
+  VG_TRY(vg_job_restart(j, m, o, 1, err));
+  VG_TRY(try_once(j, out, sound, &poor, err));
 done:
   return st;
 }
 
-static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
-                        const struct vg_remesh_options *o, struct vg_mesh *out,
+/* Attempts in which triangles are made smaller and input triangles are kept. */
+static vg_status repeat(struct vg_remesh_job *j, struct vg_mesh *out,
                         struct vg_error *err)
 {
   const int rounds = j->r.n_crossing[0] ? 1 : ROUNDS;
   const int hopeless = j->r.n_crossing[1] > 0;
   size_t left = 0;
-  int sound = 0, poor;
+  int sound = 0;
   vg_status st = VG_OK;
 
-  /* No change within the tolerance separates such parts. */
-  if (hopeless && j->r.crossing_depth > DEEP * j->r.tolerance)
-    return refuse_crossing(j, j->r.crossing_at, err);
-  if (!hopeless && (j->kept || j->along || j->strips.has_edges))
-    VG_TRY(try_all_borders(j, m, o, out, &sound, err));
-  /* Larger sizes at midpoints of long feature edges may cause intersections, or
-   * prevent needles next to a sharp edge of zero thickness from being split. */
-  if (!sound && !hopeless && j->is_cut) {
-    VG_TRY(try_once(j, out, &sound, &poor, err));
-    if (!sound) VG_TRY(vg_job_restart(j, m, o, 1, err));
-  }
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
-                               !j->strips.n && round == rounds ? 1 : 0 };
+                               !j->strips.n && round == rounds ? 1 : 0, 0 };
 
     VG_TRY(make(j, out, &a, &sound, err));
     if (sound || !j->strips.n) continue;
@@ -651,10 +643,41 @@ done:
   return st;
 }
 
+/* All attempts. Those that keep the borders between patches and the strips of
+ * thin edges come first. The others start again without both. */
+static vg_status attempt_all(struct vg_remesh_job *j, const struct vg_mesh *m,
+                             const struct vg_remesh_options *o,
+                             struct vg_mesh *out, struct vg_error *err)
+{
+  const int hopeless = j->r.n_crossing[1] > 0;
+  const int has_more = j->kept || j->along || j->strips.has_edges;
+  int sound = 0;
+  vg_status st = VG_OK;
+
+  /* No change within the tolerance separates such parts. */
+  if (hopeless && j->r.crossing_depth > DEEP * j->r.tolerance)
+    return refuse_crossing(j, j->r.crossing_at, err);
+  if (o->course == VG_REMESH_FIRST ||
+      (o->course == VG_REMESH_ALL && has_more && !hopeless)) {
+    VG_TRY(try_cuts(j, m, o, out, &sound, err));
+    if (!sound && o->course == VG_REMESH_FIRST) return VG_BLOCKED;
+  }
+  if (!sound && has_more && !hopeless) {
+    j->frees_borders = j->closes_edges = 1;
+    VG_TRY(vg_job_restart(j, m, o, j->no_cuts, err));
+  }
+  if (!sound && j->is_cut && !hopeless)
+    VG_TRY(try_cuts(j, m, o, out, &sound, err));
+  if (!sound) VG_TRY(repeat(j, out, err));
+done:
+  return st;
+}
+
 /* Complete the report on input m and result out. */
 static void tell(struct vg_remesh_job *j, const struct vg_mesh *m,
                  const struct vg_mesh *out, struct vg_remesh_report *report)
 {
+  j->r.n_intersection = j->n_fault[1];
   j->r.n_tri[0] = m->n_tri;
   j->r.n_tri[1] = out->n_tri;
   j->r.n_point[0] = m->n_point;
@@ -685,10 +708,12 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   VG_TRY(check_options(o, err));
   VG_TRY(check_stretch(m, o->stretch, err));
   VG_TRY(vg_job_prepare(&j, err));
-  VG_TRY(repeat(&j, m, o, &out, err));
+  st = attempt_all(&j, m, o, &out, err);
+  if (st < 0) goto done;
+  tell(&j, m, &out, report);
+  if (st == VG_BLOCKED) goto done;
   if (VG_CHECKS_ON && !vg_mesh_open_edges(m))
     VG_CHECK("the remeshing of a surface", vg_mesh_open_edges(&out));
-  tell(&j, m, &out, report);
   vg_mesh_move(m, &out);
 done:
   free(j.r.bad);
@@ -711,7 +736,7 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
   VG_TRY(check_options(o, err));
   VG_TRY(check_stretch(m, o->stretch, err));
   VG_TRY(vg_job_prepare(&j, err));
-  VG_TRY(make(&j, &out, &(struct attempt){ 1, 0, 0 }, &sound, err));
+  VG_TRY(make(&j, &out, &(struct attempt){ 1, 0, 0, 0 }, &sound, err));
   tell(&j, m, &out, report);
 done:
   free(j.r.bad);

@@ -23,6 +23,13 @@
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
+/** Which attempts are made while new triangles intersect. */
+enum vg_remesh_course {
+  VG_REMESH_ALL,
+  VG_REMESH_FIRST, /* Only those that keep all borders and thin edges. */
+  VG_REMESH_OTHERS /* Only the others. */
+};
+
 struct vg_remesh_options {
   double tolerance;     /* Largest distance between the surfaces. 0: 1e-4 of the
                            length of the body. It is limited to 0.05 of the
@@ -74,6 +81,7 @@ struct vg_remesh_options {
                                     is checked. */
   const uint8_t *hard;           /* [n_patch] 1: all borders of the patch are
                                     fixed; may be NULL. */
+  enum vg_remesh_course course;
   int keeps_borders;    /* 1: so are the borders of other patches, unless
                            they are so narrow that this takes many
                            triangles. */
@@ -154,6 +162,7 @@ struct vg_remesh_report {
                                          is, as if edges were not stretched. */
   double aspect_most, angle_min;
   size_t cause[VG_REMESH_N];
+  size_t n_intersection; /* VG_BLOCKED: left by the last attempt. */
   size_t n_bad;
   struct vg_remesh_bad *bad; /* [n_bad] Owned; ordered by face. */
 };
@@ -185,7 +194,8 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * @param r  released first; may be NULL
  * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges
  * of three faces or neighbours of opposite orientation, or options out of
- * range; VG_ERR_GEOMETRY if triangles intersect in all attempts;
+ * range; VG_ERR_GEOMETRY if triangles intersect in all attempts, with
+ * VG_REMESH_FIRST VG_BLOCKED, with r->n_intersection;
  * VG_ERR_STOPPED; VG_ERR_MEMORY. Re-entrant. About O(n log n). */
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *r, struct vg_error *err);

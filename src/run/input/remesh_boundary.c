@@ -112,18 +112,24 @@ static void areas(const struct vg_mesh *m, int after, double *area)
       m->point[m->tri[t][0]], m->point[m->tri[t][1]], m->point[m->tri[t][2]]);
 }
 
-static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
-                        const struct vg_surface_sizes *sizes, int is_reference,
-                        int keeps_borders, struct vg_display *show,
-                        struct vg_error *err)
+struct remesh_request {
+  const uint8_t *hard; /* [n_patch] May be NULL. */
+  const struct vg_surface_sizes *sizes;
+};
+
+static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
+                        int is_reference, enum vg_remesh_course course,
+                        struct vg_display *show, struct vg_error *err)
 {
+  const struct vg_surface_sizes *sizes = q->sizes;
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
 
   o.map = b->map;
   o.field = sizes->field;
   o.h_max = vg_boundary_largest_edge(b, o.h_max);
-  o.hard = hard;
-  o.keeps_borders = keeps_borders;
+  o.hard = q->hard;
+  o.keeps_borders = b->model.cad != NULL;
+  o.course = course;
   o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;
   o.cap = sizes->cap;
@@ -161,40 +167,65 @@ static size_t n_needle(const struct vg_remesh_report *r)
   return n;
 }
 
-/* A tessellation without defects is remeshed directly. If this yields many
- * needles for CAD, because its own needles are feature edges too, it is
- * repaired like a tessellation with defects, and the result with fewer needles
- * is kept. */
-static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
-                            const uint8_t *hard,
-                            const struct vg_surface_sizes *sizes,
-                            struct vg_display *show, struct vg_error *err)
-{
-  const int has_defects = b->check.n_defect >
-                          b->check.count[VG_DEFECT_OPEN_EDGE];
-  struct vg_remesh_report first = VG_REMESH_REPORT_INIT;
-  struct vg_mesh made = VG_MESH_INIT;
-  vg_status st;
+/* A remeshed surface with its report. */
+struct made {
+  struct vg_mesh surface;
+  struct vg_remesh_report report;
+};
 
-  VG_TRY(remesh(b, hard, sizes, has_defects, b->model.cad != NULL, show, err));
-  if (has_defects || !b->model.cad ||
-      (double)n_needle(&b->remeshing.report) <= MANY * (double)b->surface.n_tri)
-    goto done;
-  vg_mesh_move(&made, &b->surface);
-  first = b->remeshing.report;
-  b->remeshing.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
+static void release_made(struct made *d)
+{
+  vg_mesh_release(&d->surface);
+  vg_remesh_report_release(&d->report);
+}
+
+/* Exchange the surface and report of b with d. */
+static void exchange(struct vg_boundary *b, struct made *d)
+{
+  const struct made other = *d;
+
+  d->surface = b->surface;
+  d->report = b->remeshing.report;
+  b->surface = other.surface;
+  b->remeshing.report = other.report;
+}
+
+static int has_few_needles(const struct vg_boundary *b)
+{
+  return (double)n_needle(&b->remeshing.report) <=
+         MANY * (double)b->surface.n_tri;
+}
+
+/* A tessellation without defects is remeshed directly. If this fails or yields
+ * many needles, because its own needles are feature edges too, it is repaired
+ * like a tessellation with defects. The result with fewer needles is kept. If
+ * both fail, the other attempts start from the one with fewer intersections. */
+static vg_status remesh_tessellation(struct vg_boundary *b,
+                                     const struct vg_mesh *given,
+                                     const struct remesh_request *q,
+                                     struct vg_display *show,
+                                     struct vg_error *err)
+{
+  struct made first = { .surface = VG_MESH_INIT };
+  size_t n_direct, n_repaired;
+  vg_status st, direct;
+
+  VG_TRY(direct = remesh(b, q, 0, VG_REMESH_FIRST, show, err));
+  if (direct == VG_OK && has_few_needles(b)) goto done;
+  n_direct = b->remeshing.report.n_intersection;
+  exchange(b, &first);
   VG_TRY(vg_mesh_copy(&b->surface, given, err));
-  st = remesh(b, hard, sizes, 1, first.keeps_borders, show, err);
+  st = remesh(b, q, 1, VG_REMESH_FIRST, show, err);
   if (st < 0 && st != VG_ERR_GEOMETRY) goto done;
-  if (st >= 0 && n_needle(&b->remeshing.report) < n_needle(&first)) goto done;
+  n_repaired = st == VG_BLOCKED ? b->remeshing.report.n_intersection : SIZE_MAX;
+  if (direct == VG_OK && (st != VG_OK || n_needle(&b->remeshing.report) >=
+                                           n_needle(&first.report)))
+    exchange(b, &first);
+  else if (st != VG_OK)
+    VG_TRY(remesh(b, q, n_repaired < n_direct, VG_REMESH_OTHERS, show, err));
   st = VG_OK;
-  vg_mesh_move(&b->surface, &made);
-  vg_remesh_report_release(&b->remeshing.report);
-  b->remeshing.report = first;
-  first = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
 done:
-  vg_remesh_report_release(&first);
-  vg_mesh_release(&made);
+  release_made(&first);
   return st;
 }
 
@@ -312,6 +343,9 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
 {
   struct vg_remeshing *r = &b->remeshing;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL, NULL };
+  struct remesh_request q;
+  const int has_defects = b->check.n_defect >
+                          b->check.count[VG_DEFECT_OPEN_EDGE];
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();
@@ -327,7 +361,10 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
   VG_TRY(vg_boundary_field(b, &sizes.field, err));
-  VG_TRY(remesh_cad(b, &given, hard, &sizes, show, err));
+  q = (struct remesh_request){ hard, &sizes };
+  VG_TRY(b->model.cad && !has_defects
+           ? remesh_tessellation(b, &given, &q, show, err)
+           : remesh(b, &q, has_defects, VG_REMESH_ALL, show, err));
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(b, &given, show, err));
   r->is_done = 1;
