@@ -18,7 +18,7 @@ usage: verification/success/run.py --data DIR [--vanguard PROGRAM]
 Each file of files.tsv is given to `vanguard mesh -p FILE --y-plus 30
 --reynolds 5e6 --reference-length L --write lb8.ugrid`, L being the longest side
 of its bounding box. If the run is refused, the options that its message names
-are tried, one at a time. The table has the verdict of each file. Exit status 1 if
+are tried, one remedy at a time. The table has the verdict of each file. Exit status 1 if
 a file gives a mesh of a wrong domain, a mesh that is not valid, or a patch that
 changes its area by more than 1 %. Refusals are counted but are no failures."""
 import argparse
@@ -38,8 +38,9 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-REMEDY = re.compile(r"--(close-holes yes|half [xyz]|flow (?:internal|external)"
-                    r"|wrap [0-9.e+-]*[0-9]|cad-solids only)")
+REMEDY = re.compile(r"--close-holes yes --flow (?:internal|external)"
+                    r"|--close-holes yes|--half [xyz]|--flow (?:internal|external)"
+                    r"|--wrap [0-9.e+-]*[0-9]|--cad-solids only")
 AREA_CHANGE = 1.0   # %, largest change of a patch's area
 
 
@@ -163,9 +164,7 @@ def process(row, asked, folder):
     tried = [attempt(row, path, [], folder, asked)]
     if tried[0]["status"] == 1:
         for words in dict.fromkeys(REMEDY.findall(message_of(tried[0]["text"]))):
-            option, value = words.split()
-            tried.append(attempt(row, path, ["--" + option, value], folder,
-                                 asked))
+            tried.append(attempt(row, path, words.split(), folder, asked))
             if tried[-1]["status"] == 0:
                 break
     return {"name": row["name"], "expected": row["expected"],

@@ -152,34 +152,97 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
                  b->read->files.stem);
 }
 
-/* Whether --close-holes yes would give a closed surface without further
- * defects. */
-static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
-                          int *works, struct vg_error *err)
+/* Whether the flow can be determined for a closed surface m if `kind` is
+ * requested; UNKNOWN: with the settings as they are. */
+static vg_status can_be(const struct vg_boundary *b, const struct vg_mesh *m,
+                        enum vg_flow_kind kind, struct vg_display *show,
+                        int *can, struct vg_error *err)
 {
-  struct vg_surface_check_options o = vg_options_check(&b->read->settings);
+  struct vg_surface_check_options check = vg_options_check(&b->read->settings);
+  struct vg_flow_options o = vg_boundary_flow_options(b, show);
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_error why = VG_ERROR_INIT;
+  struct vg_flow flow = VG_FLOW_INIT;
+  struct vg_mesh copy = VG_MESH_INIT;
+  vg_status st;
+
+  check.threads = b->threads;
+  check.external = -1;
+  check.stop = (struct vg_stop){ vg_display_stop, show };
+  if (kind != VG_FLOW_UNKNOWN) {
+    o.kind = kind;
+    o.asked_by = "";
+  }
+  VG_TRY(vg_mesh_copy(&copy, m, err));
+  VG_TRY(vg_surface_check(&copy, &check, &r, err));
+  *can = r.n_defect <= b->check.n_defect - b->check.count[VG_DEFECT_OPEN_EDGE];
+  if (!*can) goto done;
+  st = vg_flow_settle(&copy, &r, &o, &flow, &why);
+  *can = st == VG_OK;
+  if (st == VG_ERR_INPUT || st == VG_ERR_GEOMETRY) st = VG_OK;
+  if (st < 0) vg_fail(err, st, "%s", why.text);
+done:
+  vg_flow_release(&flow);
+  vg_surface_report_release(&r);
+  vg_mesh_release(&copy);
+  return st;
+}
+
+/* The flows for which caps on the rims give a closed surface without further
+ * defects. */
+struct caps {
+  int any;      /* With the settings as they are. */
+  int internal; /* With --flow internal. */
+  int external;
+};
+
+static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
+                          struct caps *works, struct vg_error *err)
+{
+  const int is_open = b->read->settings.flow == VG_FLOW_UNKNOWN;
   struct vg_mesh m = VG_MESH_INIT;
   size_t n_hole, n_tri;
   vg_status st;
 
-  *works = 0;
   vg_display_update(show, "trying to close the rims", 0, 0);
-  o.threads = b->threads;
-  o.external = -1;
-  o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_mesh_copy(&m, &b->surface, err));
   st = vg_boundary_add_caps(b, &m, &n_hole, &n_tri, err);
-  if (st == VG_ERR_GEOMETRY) st = VG_OK;
-  else if (st == VG_OK) {
-    VG_TRY(vg_surface_check(&m, &o, &r, err));
-    *works = r.n_defect <=
-             b->check.n_defect - b->check.count[VG_DEFECT_OPEN_EDGE];
+  if (st < 0) {
+    if (st == VG_ERR_GEOMETRY) st = VG_OK;
+    goto done;
   }
+  VG_TRY(can_be(b, &m, VG_FLOW_UNKNOWN, show, &works->any, err));
+  if (!is_open) goto done;
+  VG_TRY(can_be(b, &m, VG_FLOW_INTERNAL, show, &works->internal, err));
+  if (!works->any)
+    VG_TRY(can_be(b, &m, VG_FLOW_EXTERNAL, show, &works->external, err));
 done:
-  vg_surface_report_release(&r);
   vg_mesh_release(&m);
   return st;
+}
+
+/* The options that close n rims. */
+static void name_caps(const struct caps *works, size_t n, char *text,
+                      size_t size)
+{
+  const char *list = n > 1 ? "cap_1, cap_2, ..." : "cap_1";
+
+  if (works->any)
+    snprintf(text, size,
+             "--close-holes yes closes each rim with a cap in a patch of its "
+             "own (%s%s)",
+             list,
+             n > 1 && works->internal ? "; in a duct with --flow internal"
+                                      : "");
+  else
+    snprintf(text, size,
+             "%s%s%s close%s each rim with a cap in a patch of its own (%s)",
+             works->external ? "--close-holes yes --flow external (a body)"
+                             : "",
+             works->external && works->internal ? " and " : "",
+             works->internal ? "--close-holes yes --flow internal (a duct)"
+                             : "",
+             works->external && works->internal ? "" : "s", list);
 }
 
 vg_status vg_boundary_refuse_open(struct vg_boundary *b,
@@ -187,8 +250,8 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
-  char list[400], half[160] = "", remedy[120];
-  int works = 0;
+  char list[400], half[160] = "", remedy[160];
+  struct caps works = { 0, 0, 0 };
   size_t n = 0;
   vg_status st;
 
@@ -221,7 +284,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
     free(rim);
     return st;
   }
-  if (!works) {
+  if (!works.any && !works.internal && !works.external) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: the surface is open: %zu rim%s (%s). Caps on the rims "
@@ -230,16 +293,10 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
     free(rim);
     return st;
   }
+  name_caps(&works, n, remedy, sizeof remedy);
   st = vg_fail(err, VG_ERR_GEOMETRY,
-               "%s: the surface is open: %zu rim%s (%s). --close-holes yes "
-               "closes each rim with a cap in a patch of its own "
-               "(cap_1%s%s)%s",
-               b->read->files.stem, n, n > 1 ? "s" : "", list,
-               n > 1 ? ", cap_2, ..." : "",
-               n > 1 ? "; in a duct with --flow "
-                       "internal"
-                     : "",
-               half);
+               "%s: the surface is open: %zu rim%s (%s). %s%s",
+               b->read->files.stem, n, n > 1 ? "s" : "", list, remedy, half);
   free(rim);
   return st;
 }

@@ -24,6 +24,24 @@ says err "the surface is open"
 exists open.defects.vtu
 absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
 
+# An open tube is a body or a duct: the message names the options for both, and
+# each of them works.
+awk 'BEGIN { n = 12; print "g wall"
+  for (i = 0; i < 2 * n; i++)
+    print "v", cos(i % n * 6.2831853 / n), sin(i % n * 6.2831853 / n),
+      9 * int(i / n)
+  for (i = 1; i <= n; i++) {
+    k = i % n + 1
+    print "f", i, k, n + i; print "f", k, n + k, n + i } }' >tube.obj
+vanguard check -q tube.obj
+exits 1
+says err "close-holes yes --flow external (a body)"
+says err "close-holes yes --flow internal (a duct)"
+for flow in external internal; do
+  vanguard check -q tube.obj --close-holes yes --flow $flow
+  exits 0
+done
+
 # A plane sheet bounds no volume, whatever closes its rim.
 cat >sheet.ugrid <<'END'
 4 2 0 0 0 0 0
