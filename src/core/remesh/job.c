@@ -617,7 +617,9 @@ static vg_status keep_borders(struct vg_remesh_job *j, struct vg_error *err)
   if (!j->o->keeps_borders || j->frees_borders) return VG_OK;
   j->kept = vg_calloc(j->whole->n_patch, 1);
   if (!j->kept) return vg_fail_memory(err, "the borders of the patches");
-  return vg_borders_keep(j->whole, j->r.h_max, j->kept, err);
+  /* Sizes above j->far occur on an outer boundary only. */
+  return vg_borders_keep(j->whole, j->far > 0 ? j->far : j->r.h_max, j->kept,
+                         err);
 }
 
 /* --- preparation ---------------------------------------------------------- */
