@@ -452,10 +452,33 @@ error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
   return 0;
 }
 
+/* Two options of which one would silently replace the other. */
+static vg_status refuse_pairs(const struct vg_cli_overrides *kept,
+                              struct vg_error *err)
+{
+  const struct vg_param *p[2];
+  const char *name[2];
+  int far[2];
+
+  for (size_t i = 0; i < kept->n; i++)
+    for (size_t k = 0; k < i; k++) {
+      p[0] = vg_settings_name((size_t)(kept->set[k].key - VG_KEY_SETTING),
+                              &name[0], &far[0]);
+      p[1] = vg_settings_name((size_t)(kept->set[i].key - VG_KEY_SETTING),
+                              &name[1], &far[1]);
+      if (far[0] || far[1] || !vg_settings_exclude(p[0], p[1])) continue;
+      return vg_fail(err, VG_ERR_INPUT,
+                     "the options for %s and %s are both given, and one would "
+                     "replace the other; give one",
+                     name[0], name[1]);
+    }
+  return VG_OK;
+}
+
 vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
                        struct vg_settings *s, struct vg_error *err)
 {
-  vg_status st = VG_OK;
+  vg_status st = refuse_pairs(kept, err);
 
   for (size_t i = 0; i < kept->n && st >= 0; i++)
     st = set_option(kept->set[i].key, kept->set[i].text, s, err);

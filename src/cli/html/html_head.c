@@ -119,11 +119,13 @@ static void missed(struct list *l)
 
     if (!begin(l, WEIGHT_BAD)) return;
     patch_words(l->p, "Patch", m->patch);
-    vg_page_format(l->p, ": %s is ", m->name);
-    vg_page_real(l->p, m->wanted, 10);
-    vg_page_format(l->p,
-                   m->is_bare ? "%s, but it has no layers" : "%s, reached ",
-                   m->unit);
+    if (isnan(m->wanted)) vg_page_markup(l->p, ": layers are requested");
+    else {
+      vg_page_format(l->p, ": %s is ", m->name);
+      vg_page_real(l->p, m->wanted, 10);
+      vg_page_markup(l->p, m->unit);
+    }
+    vg_page_markup(l->p, m->is_bare ? ", but it has no layers" : ", reached ");
     if (!m->is_bare) {
       vg_page_real(l->p, m->got, 10);
       vg_page_markup(l->p, m->unit);

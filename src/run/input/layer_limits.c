@@ -14,6 +14,17 @@ static int is_missed(const struct vg_limit_missed *m)
   return m->is_least ? m->got < m->wanted : m->got > m->wanted;
 }
 
+static vg_status add_missed(struct vg_layer_stage *s,
+                            const struct vg_limit_missed *m,
+                            struct vg_error *err)
+{
+  if (vg_reserve(&s->missed, &s->cap_missed, s->n_missed + 1,
+                 sizeof *s->missed))
+    return vg_fail_memory(err, "the limits");
+  s->missed[s->n_missed++] = *m;
+  return VG_OK;
+}
+
 /* Checks the limits of patch i. w: its measured layers; NULL: it has no face
  * from which layers grow. */
 static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
@@ -23,6 +34,8 @@ static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
   static const struct vg_patch_layers none = { .n_face = 0 };
   const struct vg_layer_limits *l = &s->limit[i];
   const int bare = !w || !(w->any > 0);
+  const size_t before = s->n_missed;
+  vg_status st = VG_OK;
   struct vg_limit_missed limit[] = {
     { i, "min_full", " %", 1, bare, l->min_full, 0 },
     { i, "min_any", " %", 1, bare, l->min_any, 0 },
@@ -37,14 +50,15 @@ static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
   limit[2].got = 100 * w->share_mean;
   limit[3].got = 100 * w->first_error;
   limit[4].got = w->top_ratio[1];
-  for (size_t k = 0; k < sizeof limit / sizeof *limit; k++) {
-    if (!is_missed(&limit[k])) continue;
-    if (vg_reserve(&s->missed, &s->cap_missed, s->n_missed + 1,
-                   sizeof *s->missed))
-      return vg_fail_memory(err, "the limits");
-    s->missed[s->n_missed++] = limit[k];
-  }
-  return VG_OK;
+  for (size_t k = 0; k < sizeof limit / sizeof *limit; k++)
+    if (is_missed(&limit[k])) VG_TRY(add_missed(s, &limit[k], err));
+  /* Requested layers of which none grow are a missed limit, too. */
+  if (s->n_missed == before && !(s->all.any > 0))
+    VG_TRY(
+      add_missed(s, &(struct vg_limit_missed){ i, "layers", "", 1, 1, NAN, 0 },
+                 err));
+done:
+  return st;
 }
 
 vg_status vg_layer_stage_finish(struct vg_layer_stage *s,

@@ -588,13 +588,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
     note_missing(s, b);
     n_wall = 0;
   }
-  if (!n_wall) {
-    if (vg_walls_asked(set))
-      vg_note(b->notes, "layers were requested, but no patch has a viscous "
-                        "boundary condition, so no layers grow (--walls names "
-                        "the walls)");
-    return VG_OK;
-  }
+  if (!n_wall) return VG_OK;
   VG_TRY(make_requests(s, b, h, err));
   VG_TRY(extend_walls(s, b, err));
   note_choice(s, b);

@@ -21,7 +21,7 @@ struct vg_limit_missed {
   int is_least;            /* 1: a lower limit; 0: an upper limit. */
   int is_bare;             /* 1: the patch has no layers, so `got` is
                               meaningless. */
-  double wanted, got;
+  double wanted, got;      /* wanted NAN: any layers at all. */
 };
 
 struct vg_layer_laws; /* Growth laws by source, private to

@@ -225,17 +225,6 @@ done:
   return st;
 }
 
-/* Whether layers are mandatory: a limit that no patch is checked against would
- * be met. */
-static int is_mandatory(const struct vg_settings *s)
-{
-  const struct vg_layer_settings *l = &s->layer;
-
-  for (size_t i = 0; i < s->n_layer; i++)
-    if (vg_has_limits(&s->layer_row[i].limit)) return 1;
-  return l->grow == VG_ANSWER_YES || vg_has_limits(&l->limit);
-}
-
 static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
 {
   char list[600];
@@ -267,11 +256,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
-  /* A complete domain whose conditions say that nothing is viscous is accepted,
-   * unless layers are mandatory. */
-  if (!*n_wall && vg_walls_asked(&b->read->settings) &&
-      (is_mandatory(&b->read->settings) || !b->require_bc))
-    st = no_walls(b, err);
+  if (!*n_wall && vg_walls_asked(&b->read->settings)) st = no_walls(b, err);
 done:
   free(mark_of);
   return st;

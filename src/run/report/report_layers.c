@@ -310,8 +310,10 @@ void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
     const struct vg_limit_missed *m = &s->missed[i];
     const struct vg_patch *p = &surface->patch[m->patch];
 
-    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g%s, ", (int)p->id,
-            *p->name ? " " : "", p->name, m->name, m->wanted, m->unit);
+    fprintf(to, "limit not met: patch %d%s%s: ", (int)p->id,
+            *p->name ? " " : "", p->name);
+    if (isnan(m->wanted)) fprintf(to, "layers are requested, ");
+    else fprintf(to, "%s is %.10g%s, ", m->name, m->wanted, m->unit);
     if (m->is_bare) fprintf(to, "but the patch has no layers\n");
     else fprintf(to, "reached %.10g%s\n", m->got, m->unit);
   }

@@ -490,6 +490,27 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 
+/* Pairs of settings of which one replaces the other. */
+static const size_t pairs[][2] = {
+  { offsetof(struct vg_settings, layer.first),
+    offsetof(struct vg_settings, layer.y_plus) },
+  { offsetof(struct vg_settings, leaf_cells),
+    offsetof(struct vg_settings, bisections) },
+  { offsetof(struct vg_settings, layer.ratio),
+    offsetof(struct vg_settings, layer.rate1) },
+  { offsetof(struct vg_settings, layer.ratio),
+    offsetof(struct vg_settings, layer.rate2) }
+};
+
+int vg_settings_exclude(const struct vg_param *a, const struct vg_param *b)
+{
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+    if ((a->offset == pairs[i][0] && b->offset == pairs[i][1]) ||
+        (a->offset == pairs[i][1] && b->offset == pairs[i][0]))
+      return 1;
+  return 0;
+}
+
 void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
 {
   struct vg_layer_settings *l = &s->layer;

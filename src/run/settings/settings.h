@@ -343,6 +343,10 @@ void vg_settings_convert(struct vg_settings *s, int unit);
 void vg_param_format(const struct vg_param *p, const void *base, char *out,
                      size_t size);
 
+/** Whether one of the two settings, which are not columns of the farfield
+ * table, replaces the other: as first and y_plus. */
+int vg_settings_exclude(const struct vg_param *a, const struct vg_param *b);
+
 /** Reset the alternatives of a setting. Some quantities can be given in two
  * ways (first and y_plus, ratio and the rates, leaf_cells and bisections); the
  * one that was set last applies.

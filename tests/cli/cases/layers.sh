@@ -77,14 +77,15 @@ exits 0
 same one/box.b8.ugrid v2/box.b8.ugrid
 says v2/box.report.json '"wall_by": "condition"'
 vanguard mesh -q -p viscous/box --first 1e-3 --slip 5 --out v3
-exits 0
-absent v3/box.wall.vtu
+exits 1
+says err "no patch is known to be a wall"
 
-# A first height above all edge lengths leaves no layer, which is reported
-# too.
+# A first height above all edge lengths leaves no layer: a limit that is not
+# met.
 vanguard mesh -q -p p/box --walls 5 --first 10 --out high
-exits 0
+exits 4
 says out "(first height exceeds layer_end times the edge length)"
+says err "patch 5 z-min: layers are requested, but the patch has no layers"
 
 # Values for a single patch. A limit that cannot be met: all files are
 # written, the patch is named, and the status is 4.
@@ -136,9 +137,14 @@ refuse "layers: the surface has no patch 66" --deck slip.deck --walls 5 \
   --first 1
 printf 't\nwalls first\n5 1e-3\n\nlayers\nid grow\n5 no\n' >slip.deck
 refuse "the table layers has grow no" --deck slip.deck
-vanguard mesh -q -p p/box --first 1e-3 --out note
-exits 0
-says out "layers were requested, but no patch has a viscous boundary condition"
+refuse "no patch is known to be a wall" --first 1e-3
+# Of two options, neither replaces the other in silence.
+for pair in "--first 1e-3 --y-plus 0" "--leaf-cells 1000 --bisections 2"; do
+  # shellcheck disable=SC2086 # options and values
+  vanguard mesh -q -p p/box $pair --out pair
+  exits 2
+  says err "are both given, and one would replace the other; give one"
+done
 
 # Without layers a limit could never be checked, so it is refused.
 refuse "no patch is known to be a wall" --first 1e-3 --min-full 98
@@ -193,7 +199,7 @@ same foam/box.b8.ugrid mixed/box.b8.ugrid
 # A first height in a unit other than that of the surface: no layers, and a
 # question.
 vanguard mesh -q -p p/box --walls 5 --first 100 --out huge
-exits 0
+exits 4
 says out "no layers on 1 of 1 walls (patch 5): the first height, 100"
 
 # Without layers there are no shares to compare, and no limit is met.
