@@ -339,8 +339,11 @@ static int is_longest(const struct vg_tris *w, uint32_t h)
 static int waits(const struct vg_tris *w, uint32_t h, double most,
                  enum vg_split which)
 {
+  /* In a metric, needles along thin strips are as requested. */
+  const int is_near = which == VG_SPLIT_NEAR && !vg_tris_is_stretched(w);
+
   return (which == VG_SPLIT_LONGEST ||
-          (which == VG_SPLIT_NEAR && vg_tris_ratio(w, h) > MUCH * most)) &&
+          (is_near && vg_tris_ratio(w, h) > MUCH * most)) &&
          !is_longest(w, h);
 }
 
