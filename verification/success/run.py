@@ -17,9 +17,9 @@ usage: verification/success/run.py --data DIR [--vanguard PROGRAM]
 
 Each file of files.tsv is given to `vanguard mesh -p FILE --y-plus 30
 --reynolds 5e6 --reference-length L --write lb8.ugrid`, L being the longest side
-of its bounding box. If the run is refused, the options that its message names
-are tried, one remedy at a time. The table has the verdict of each file. Exit status 1 if
-a file gives a mesh of a wrong domain, a mesh that is not valid, or a patch that
+of the bounding box of the body. If the run is refused, the options that its
+message names are tried, one remedy at a time. The table has the verdict of each
+file. Exit status 1 if a file gives a mesh of a wrong domain, a mesh that is not valid, or a patch that
 changes its area by more than 1 %. Refusals are counted but are no failures."""
 import argparse
 import concurrent.futures

@@ -665,14 +665,18 @@ static vg_status restart(struct vg_remesh_job *j, const struct vg_mesh *m,
   return prepare(j, cuts, err);
 }
 
-/* Split feature edges if this saves enough triangles. */
-static vg_status try_to_cut(struct vg_remesh_job *j, const struct vg_mesh *m,
-                            const struct vg_remesh_options *o,
-                            struct vg_error *err)
+/* Feature edges are split if this saves enough triangles. */
+vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
+                         const struct vg_remesh_options *o, int no_cuts,
+                         struct vg_error *err)
 {
-  const double n = j->n_expected;
+  double n;
   vg_status st;
 
+  j->no_cuts = no_cuts;
+  VG_TRY(restart(j, m, o, 0, err));
+  if (j->looks || j->no_cuts || !has_long_lines(j)) goto done;
+  n = j->n_expected;
   VG_TRY(restart(j, m, o, 1, err));
   if (j->is_cut && j->n_expected > GAIN * n) VG_TRY(restart(j, m, o, 0, err));
 done:
@@ -681,28 +685,7 @@ done:
 
 vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
 {
-  const struct vg_mesh *m = j->whole;
-  const struct vg_remesh_options *o = j->o;
-  vg_status st;
-
-  VG_TRY(prepare(j, 0, err));
-  if (!j->looks && !o->fixed && !j->no_cuts && has_long_lines(j))
-    VG_TRY(try_to_cut(j, m, o, err));
-done:
-  return st;
-}
-
-vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
-                         const struct vg_remesh_options *o, int no_cuts,
-                         struct vg_error *err)
-{
-  vg_status st;
-
-  j->no_cuts = no_cuts;
-  VG_TRY(restart(j, m, o, 0, err));
-  if (!no_cuts && has_long_lines(j)) VG_TRY(try_to_cut(j, m, o, err));
-done:
-  return st;
+  return vg_job_restart(j, j->whole, j->o, j->no_cuts, err);
 }
 
 void vg_job_release(struct vg_remesh_job *j)

@@ -332,8 +332,8 @@ static int is_longest(const struct vg_tris *w, uint32_t h)
  *
  *      o--------------------o     border: the needle below cannot be split
  *       `-.__             .'
- *            `-.__      .'        ever thinner needles if the shorter of its
- *                 `-._.'          long edges is
+ *            `-.__      .'        ever thinner needles arise if the shorter
+ *                 `-._.'          of its long edges is split instead
  *                     o
  */
 static int waits(const struct vg_tris *w, uint32_t h, double most,

@@ -18,7 +18,8 @@ enum vg_split {
   VG_SPLIT_ALL,
   VG_SPLIT_NEAR,    /* Edges that are much too long wait until they are the
                        longest of both their triangles. */
-  VG_SPLIT_LONGEST, /* Only edges that are, in a single round. */
+  VG_SPLIT_LONGEST, /* Only the longest edges of both their triangles, in
+                       a single round. */
 };
 
 /** vg_pass_collapse collapses edges shorter than `least` target lengths, the

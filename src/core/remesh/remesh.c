@@ -482,7 +482,7 @@ done:
 /* One attempt: how often intersecting triangles are made smaller, whether
  * failure is final, the width of the neighbourhood in which input triangles are
  * kept next, in edges of the intersecting triangles, and the largest number of
- * intersections that are worth this; 0: any number. */
+ * intersections at which triangles are made smaller; 0: any number. */
 struct attempt {
   int mends, last;
   double rings;

@@ -194,8 +194,8 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * @param r  released first; may be NULL
  * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges
  * of three faces or neighbours of opposite orientation, or options out of
- * range; VG_ERR_GEOMETRY if triangles intersect in all attempts, with
- * VG_REMESH_FIRST VG_BLOCKED, with r->n_intersection;
+ * range; VG_ERR_GEOMETRY if triangles intersect in all attempts;
+ * VG_BLOCKED in place of it for VG_REMESH_FIRST: r then has n_intersection;
  * VG_ERR_STOPPED; VG_ERR_MEMORY. Re-entrant. About O(n log n). */
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *r, struct vg_error *err);

@@ -199,7 +199,7 @@ struct caps {
 static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
                           struct caps *works, struct vg_error *err)
 {
-  const int is_open = b->read->settings.flow == VG_FLOW_UNKNOWN;
+  const int is_given = b->read->settings.flow != VG_FLOW_UNKNOWN;
   struct vg_mesh m = VG_MESH_INIT;
   size_t n_hole, n_tri;
   vg_status st;
@@ -212,7 +212,7 @@ static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
     goto done;
   }
   VG_TRY(can_be(b, &m, VG_FLOW_UNKNOWN, show, &works->any, err));
-  if (!is_open) goto done;
+  if (is_given) goto done;
   VG_TRY(can_be(b, &m, VG_FLOW_INTERNAL, show, &works->internal, err));
   if (!works->any)
     VG_TRY(can_be(b, &m, VG_FLOW_EXTERNAL, show, &works->external, err));
@@ -236,13 +236,13 @@ static void name_caps(const struct caps *works, size_t n, char *text,
                                       : "");
   else
     snprintf(text, size,
-             "%s%s%s close%s each rim with a cap in a patch of its own (%s)",
+             "%s%s%s closes each rim with a cap in a patch of its own (%s)",
              works->external ? "--close-holes yes --flow external (a body)"
                              : "",
-             works->external && works->internal ? " and " : "",
+             works->external && works->internal ? " or " : "",
              works->internal ? "--close-holes yes --flow internal (a duct)"
                              : "",
-             works->external && works->internal ? "" : "s", list);
+             list);
 }
 
 vg_status vg_boundary_refuse_open(struct vg_boundary *b,
