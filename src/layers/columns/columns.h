@@ -51,8 +51,8 @@
  * per cause. ROW(NAME, KEY, TEXT, RED, GREEN, BLUE): enum VG_CAUSE_NAME, name
  * in reports and files, explanation, colour in pictures. The first two are no
  * restrictions: all requested layers were grown, or they ended at the local
- * edge length, as intended. New causes are appended, since numbers are part of
- * files and of the library. */
+ * edge length, as intended. New causes are appended,
+ * since numbers are part of files and of the library. */
 #define VG_LAYER_CAUSES(ROW)                                                   \
   ROW(NONE, "none", "full layers", 176, 208, 190)                              \
   ROW(SIZE, "size", "ended at the local edge length, as intended", 176, 208,   \
@@ -65,7 +65,11 @@
   ROW(COLLISION, "collision",                                                  \
       "tops or side faces of the layers would intersect", 0, 114, 178)         \
   ROW(SLIDE, "slide", "the wall meets a slide patch at too flat an angle",     \
-      240, 100, 150)
+      240, 100, 150)                                                           \
+  ROW(NEIGHBOUR, "neighbour", "lower layers are requested next to it", 90,     \
+      190, 210)                                                                \
+  ROW(GRADATION, "gradation", "the local edge length is smaller next to it",   \
+      150, 150, 60)
 
 enum vg_layer_cause {
 #define ROW(name, key, text, red, green, blue) VG_CAUSE_##name,
@@ -99,8 +103,9 @@ struct vg_column {
   uint8_t cause;     /* enum vg_layer_cause: what reduced n below n_fit. */
   uint8_t compressed; /* enum vg_layer_cause: what reduced cap below that of the
                        law; VG_CAUSE_NONE if nothing did. */
-  uint16_t n_fit;     /* Requested levels: n_wanted or, in a column of limited
-                         height into which these would fit, the smaller number
+  uint16_t n_fit;     /* Requested levels: n_wanted or, in a column whose height
+                         is limited, but not by the request of another patch,
+                         and into which these would fit, the smaller number
                          that layer_jump asks for. */
 };
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");

@@ -57,7 +57,8 @@ struct vg_layer_options {
   struct vg_progress progress;
   struct vg_stop stop; /* Queried between rounds. */
 };
-/* L1 */
+/* L1: prisms have three times the volume of tetrahedra of the same height. */
+#define VG_LAYER_END_MIXED 0.6
 #define VG_LAYER_OPTIONS_INIT                                                  \
   {                                                                            \
     NULL, NULL, NULL, 0, 0.95, 0.4, 1, 1.5, 100, 1, NULL, { NULL, NULL },      \

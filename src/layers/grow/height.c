@@ -6,6 +6,7 @@
  * layers and grows more slowly (with a lower cap than its law). Levels are
  * dropped only where layers of equal thickness would still be too high. */
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,8 +93,21 @@ static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Where patches meet, the patch with the thinnest first layer applies to all
- * columns of a fan, so that they have equal heights. */
+/* Does request a apply where its patch meets that of request b? The thinner
+ * first layer does, and of equal ones the lower fixed number of layers. */
+static int applies(const struct vg_layer_request *a,
+                   const struct vg_layer_request *b)
+{
+  const int n_a = a->n_exact ? a->n_max : INT_MAX;
+  const int n_b = b->n_exact ? b->n_max : INT_MAX;
+
+  if (a->law.delta1 < b->law.delta1 || a->law.delta1 > b->law.delta1)
+    return a->law.delta1 < b->law.delta1;
+  return n_a < n_b;
+}
+
+/* Where patches meet, one request applies to all columns of a fan, so that they
+ * have equal heights; of equal requests the first. */
 static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 {
   uint32_t first, end, best = VG_NO_INDEX;
@@ -104,9 +118,8 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 
     if (tri == VG_NO_INDEX) continue;
     p = w->m->tri_patch[tri];
-    if (best == VG_NO_INDEX ||
-        w->o->patch[p].law.delta1 < w->o->patch[best].law.delta1 ||
-        (w->o->patch[p].law.delta1 == w->o->patch[best].law.delta1 && p < best))
+    if (best == VG_NO_INDEX || applies(&w->o->patch[p], &w->o->patch[best]) ||
+        (p < best && !applies(&w->o->patch[best], &w->o->patch[p])))
       best = p;
   }
   return best;
@@ -222,17 +235,16 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
   return n_now ? VG_OK : vg_fail_memory(err, "the layers");
 }
 
-/* Neighbours differ by at most one level, and columns of one root by none. */
+/* Columns of one root request the same number of levels. */
 static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
                         uint32_t j)
 {
   uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
-  int most = a->n_wanted + (a->root != b->root);
 
   (void)unused;
-  if (b->n_wanted <= most) return 0;
-  b->n_wanted = (uint16_t)most;
+  if (a->root != b->root || b->n_wanted <= a->n_wanted) return 0;
+  b->n_wanted = a->n_wanted;
   w->by_size[o] = w->by_size[i];
   return 1;
 }
@@ -252,6 +264,38 @@ static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
   return 1;
 }
 
+static int same_request(const struct vg_layer_request *a,
+                        const struct vg_layer_request *b)
+{
+  return a->law.delta1 == b->law.delta1 && a->law.rate1 == b->law.rate1 &&
+         a->law.rate2 == b->law.rate2 && a->law.cap == b->law.cap &&
+         a->n_max == b->n_max && a->total == b->total &&
+         a->n_exact == b->n_exact;
+}
+
+/* Why column i, whose height nothing limits, limits that of its neighbour o. */
+static uint8_t why_lower(const struct vg_layer_work *w, uint32_t i, uint32_t o)
+{
+  const struct vg_layer_request *a = &w->o->patch[patch_of(w, i)];
+  const struct vg_layer_request *b = &w->o->patch[patch_of(w, o)];
+
+  return same_request(a, b) ? VG_CAUSE_GRADATION : VG_CAUSE_NEIGHBOUR;
+}
+
+/* Height of column i with one level more than it requests. */
+static double one_more(const struct vg_layer_work *w, uint32_t i)
+{
+  const struct vg_column *c = &w->c->column[i];
+  double d[VG_LEVELS_MAX + 1];
+  const int n = c->n_wanted < VG_LEVELS_MAX ? c->n_wanted + 1 : VG_LEVELS_MAX;
+
+  vg_growth_law_heights(&w->c->law[c->law], INFINITY, n, d);
+  return d[n];
+}
+
+/* The tops of neighbours differ by the slack at the most. Next to a column of
+ * its requested height, they may also differ by a level, since numbers of
+ * levels are whole. */
 static int lower_allowed(struct vg_layer_work *w, void *unused, uint32_t i,
                          uint32_t j)
 {
@@ -259,10 +303,14 @@ static int lower_allowed(struct vg_layer_work *w, void *unused, uint32_t i,
   double limit = w->allowed[i] + w->slack[j];
 
   (void)unused;
-  if (w->why[i] == VG_CAUSE_NONE) return 0;
   if (!(w->allowed[o] > limit)) return 0;
+  if (w->why[i] == VG_CAUSE_NONE &&
+      w->c->column[i].root != w->c->column[o].root) {
+    limit = fmax(limit, one_more(w, i));
+    if (!(w->allowed[o] > limit)) return 0;
+  }
   w->allowed[o] = limit;
-  w->why[o] = w->why[i];
+  w->why[o] = w->why[i] == VG_CAUSE_NONE ? why_lower(w, i, o) : w->why[i];
   return 1;
 }
 
@@ -499,6 +547,7 @@ static void fit(struct vg_layer_work *w, size_t i)
                                                      w->edge[first]);
     if (c->n_fit < c->n_wanted)
       c->cap = vg_growth_law_compress(law, c->n_fit, w->allowed[i]);
+    if (w->why[i] == VG_CAUSE_NEIGHBOUR) c->n_fit = c->n_wanted;
     return;
   }
   c->cap = 1;

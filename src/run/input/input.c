@@ -584,7 +584,7 @@ static void merge_layers(struct vg_read *r)
   if (l->most == 0 && d->layer.n_max > 0)
     l->most = d->layer.n_max < VG_LEVELS_MAX ? d->layer.n_max : VG_LEVELS_MAX;
   if (isnan(l->cap)) l->cap = 0;
-  if (d->vfact > 0) l->end *= d->vfact;
+  if (d->vfact > 0) l->end = d->vfact * vg_options_layers(&r->settings).end;
 }
 
 /* Row of patch id in the layers table; added if it is missing. */

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "layers/expand/join.h"
 #include "partition/advance/ways.h"
 
 /* Defaults and bounds of struct vg_cad_options for every scale. */
@@ -196,7 +197,8 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
   struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
 
   o.fan_angle = s->layer.fan_angle;
-  o.end = s->layer.end;
+  if (!isnan(s->layer.end)) o.end = s->layer.end;
+  else if (s->cells == VG_LAYER_MIXED) o.end = VG_LAYER_END_MIXED;
   o.gap = s->layer.gap;
   o.slope = s->layer.slope;
   o.jump = s->layer.jump;

@@ -343,9 +343,10 @@ VG_ROW(REAL, layer, jump, "layer_jump", layers.jump,
   "sides of the layers' end to aim at. Where the height of the layers is "
   "limited, they get fewer levels, up to the requested growth, until it is "
   "met; 1000 keeps all levels")
-VG_ROW(REAL, layer, end, "layer_end", layers.end,
-  .hi = 100, .above_lo = 1, .unit = "edges", .help = "Layers end before one "
-  "would be higher than this times the local edge length")
+VG_ROW(REAL, layer, end, "layer_end", NAN,
+  .hi = 100, .above_lo = 1, .optional = 1, .unit = "edges", .help = "Layers "
+  "end before one would be higher than this times the local edge length; -: "
+  "0.95, or 0.6 with mixed cells")
 VG_ROW(COUNT, layer, smooth, "layer_smooth", layers.smooth,
   .hi = 10000, .unit = "sweeps", .help = "Sweeps that smooth the directions "
   "of the layers")

@@ -116,7 +116,7 @@ def test_layers():
     got = w["first"][w["level"] > 0]
     assert got.min() == mesh.walls[0]["first"][0]
     assert (w["level"] <= w["wanted"]).all() and (w["asked"] == 0.01).all()
-    assert vanguard.causes()[6] == "collision" and w["cause"].max() < 8
+    assert vanguard.causes()[6] == "collision" and w["cause"].max() < 10
     data = mesh.to_meshio_dict()
     kinds = [kind for kind, cells in data["cells"]]
     assert kinds[0] == "tetra" and "wedge" in kinds and "quad" in kinds
