@@ -594,6 +594,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   note_choice(s, b);
   give_conditions(s, b);
   set_options(s, set);
+  if (!s->laws) vg_note_first_heights(s, b);
   s->is_on = 1;
 done:
   return st;

@@ -64,6 +64,12 @@ void vg_layer_stage_release(struct vg_layer_stage *s);
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                               struct vg_error *err);
 
+/** Adds a note in front of all others if a first height, or the reference
+ * length that determines it, is implausible for the size of the walls, which is
+ * mostly a matter of units. s: planned, with options. */
+void vg_note_first_heights(const struct vg_layer_stage *s,
+                           struct vg_boundary *b);
+
 /** Swaps slivers of the surface as the settings request, and makes p->resolved:
  * a run with these settings makes the same mesh. */
 vg_status vg_problem_settle(struct vg_problem *p,

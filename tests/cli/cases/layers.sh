@@ -80,6 +80,18 @@ vanguard mesh -q -p viscous/box --first 1e-3 --slip 5 --out v3
 exits 1
 says err "no patch is known to be a wall"
 
+# A first height or a reference length in another unit is the first note.
+vanguard mesh -q -p p/box --walls 5 --first 1e-9 --layer-count 3 --out tiny
+says out "are both in the same unit?"
+[[ $(grep -m1 note: out) = *"same unit?"* ]] || fail "not the first note"
+vanguard mesh -q -p p/box --walls 5 --y-plus 1 --reynolds 5e6 \
+  --reference-length 1e-3 --layer-count 3 --out tiny
+[[ $(grep -m1 note: out) = *"is it in the unit of the surface?"* ]] ||
+  fail "no first note about the reference length"
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out plausible
+lacks out "unit of the surface"
+lacks out "same unit"
+
 # A first height above all edge lengths leaves no layer: a limit that is not
 # met.
 vanguard mesh -q -p p/box --walls 5 --first 10 --out high
