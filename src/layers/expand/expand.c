@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "layers/expand/expand_parts.h"
 #include "layers/expand/join.h"
+#include "layers/expand/pairs.h"
 
 #define COLUMN_GRAIN 512
 
@@ -47,8 +48,9 @@ static vg_status reserve(struct vg_expand *e, struct vg_error *err)
                  : VG_OK;
 }
 
-vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
-                         int mixed, int threads, struct vg_error *err)
+vg_status vg_expand_open(struct vg_expand *e, const struct vg_mesh *surface,
+                         const struct vg_columns *columns, int mixed,
+                         int threads, struct vg_error *err)
 {
   vg_status st;
 
@@ -65,8 +67,12 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
                      (size_t)columns->column[i].root + 1, columns->column[i].n,
                      VG_LEVELS_MAX);
   st = reserve(e, err);
+  if (st >= 0) {
+    mark_columns(e);
+    if (mixed) st = vg_pairs_find(e, surface, err);
+    e->n_point[VG_INNER] += e->n_pair;
+  }
   if (st < 0) vg_expand_close(e);
-  else mark_columns(e);
   return st;
 }
 
@@ -77,6 +83,8 @@ void vg_expand_close(struct vg_expand *e)
   free(e->base);
   free(e->inner);
   for (int k = 0; k < VG_N_KIND; k++) free(e->cell[k]);
+  free(e->partner);
+  free(e->middle);
   memset(e, 0, sizeof *e);
 }
 
@@ -86,18 +94,22 @@ static void number_columns(struct vg_expand *e, const size_t first[2])
 {
   const struct vg_columns *c = e->columns;
   size_t next[2] = { first[0], first[1] };
+  uint32_t column[4];
+  int n;
 
   memset(e->base, 0xff, c->n_column * sizeof *e->base);
   for (size_t i = 0; i < c->n_face; i++) {
     if (i % VG_FACE_BLOCK == 0) e->inner[i / VG_FACE_BLOCK] = next[VG_INNER];
-    for (int k = 0; k < 3; k++) {
-      uint32_t at = c->face[i][k];
+    n = vg_expand_corners(e, i, column);
+    for (int k = 0; k < n; k++) {
+      uint32_t at = column[k];
       uint16_t mark = e->mark[at];
 
       if (e->base[at] != VG_NO_INDEX || !vg_mark_n(mark)) continue;
       e->base[at] = (uint32_t)next[vg_mark_group(mark)];
       next[vg_mark_group(mark)] += vg_mark_n(mark);
     }
+    if (n == 4) e->middle[i] = (uint32_t)next[VG_INNER]++;
   }
   e->inner[e->n_block] = next[VG_INNER];
 }
@@ -156,6 +168,16 @@ static void place_columns(void *context, size_t first, size_t end, int worker)
       vg_expand_column(e, p->surface, i, p->point + e->base[i]);
 }
 
+static void place_middles(void *context, size_t first, size_t end, int worker)
+{
+  const struct points *p = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    if (vg_pair_is_first(p->e, i))
+      vg_pair_middle(p->e, p->surface, i, p->point[p->e->middle[i]]);
+}
+
 void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,
                       int flanks_only, double (*point)[3])
 {
@@ -163,17 +185,21 @@ void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,
 
   vg_parallel_for(e->threads, e->columns->n_column, COLUMN_GRAIN, place_columns,
                   &p);
+  if (e->n_pair && !flanks_only)
+    vg_parallel_for(e->threads, e->columns->n_face, COLUMN_GRAIN, place_middles,
+                    &p);
 }
 
-vg_status vg_layers_count(const struct vg_layers *layers,
+vg_status vg_layers_count(const struct vg_mesh *surface,
+                          const struct vg_layers *layers,
                           enum vg_layer_cells cells, int threads, uint64_t *n,
                           struct vg_error *err)
 {
   assert(n && threads >= 0);
 
   struct vg_expand e;
-  vg_status st = vg_expand_open(&e, &layers->columns, cells == VG_LAYER_MIXED,
-                                threads, err);
+  vg_status st = vg_expand_open(&e, surface, &layers->columns,
+                                cells == VG_LAYER_MIXED, threads, err);
 
   if (st < 0) return st;
   /* Any numbers will do if columns of one root have the same. */

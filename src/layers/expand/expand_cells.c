@@ -22,6 +22,7 @@
 #include "base/parallel.h"
 #include "layers/expand/expand_parts.h"
 #include "layers/expand/join.h"
+#include "layers/expand/pairs.h"
 
 /* Blocks of faces that a thread takes at a time. */
 #define BLOCK_GRAIN 8
@@ -145,14 +146,59 @@ static inline void rise_one_by_one(const uint32_t f[3], uint32_t p[3],
   }
 }
 
-/* Corners of a face whose root has no other column, in mixed mode. */
+/* Corners of a face that are raised together from the wall, in mixed mode: no
+ * mark, and no corner of the same root. */
 static unsigned alone(const struct vg_expand *e, const uint32_t f[3])
 {
+  const struct vg_column *c = e->columns->column;
   unsigned mask = 0;
 
-  for (int k = 0; k < 3 && e->mixed; k++)
-    mask |= (unsigned)!(e->mark[f[k]] & VG_MARK_SHARED) << k;
+  for (int k = 0; k < 3 && e->mixed; k++) {
+    const uint32_t root = c[f[k]].root;
+
+    mask |= (unsigned)(!(e->mark[f[k]] & VG_MARK_SHARED) &&
+                       root != c[f[(k + 1) % 3]].root &&
+                       root != c[f[(k + 2) % 3]].root)
+         << k;
+  }
   return mask;
+}
+
+void vg_expand_wall(const struct vg_expand *e, const uint32_t f[3],
+                    const uint32_t foot[3], const uint32_t base[3],
+                    struct vg_cell_sink *s)
+{
+  uint32_t p[3] = { foot[0], foot[1], foot[2] }, h[3];
+
+  for (int k = 0; k < 3; k++)
+    h[k] = vg_mark_n(e->mark[f[k]]) ? base[k] : VG_NO_INDEX;
+  rise_from_wall(f, alone(e, f), p, h, s);
+}
+
+int vg_expand_corners(const struct vg_expand *e, size_t face,
+                      uint32_t column[4])
+{
+  if (!e->partner || e->partner[face] == VG_NO_INDEX) {
+    memcpy(column, e->columns->face[face], 3 * sizeof *column);
+    return 3;
+  }
+  if (!vg_pair_is_first(e, face)) return 0;
+  vg_pair_corners(e, face, column);
+  return 4;
+}
+
+/* How a pair begins at the wall. Columns with a mark are raised after the
+ * others; if both roots have one, the lower columns are raised first, as on the
+ * faces next to them. */
+static enum vg_pair_start start_of(const struct vg_expand *e,
+                                   const uint32_t q[4])
+{
+  const int a = (e->mark[q[0]] & VG_MARK_SHARED) != 0;
+  const int b = (e->mark[q[2]] & VG_MARK_SHARED) != 0;
+
+  if (!a && !b) return VG_PAIR_TOGETHER;
+  if (a != b) return b ? VG_PAIR_FIRST_ROOT : VG_PAIR_SECOND_ROOT;
+  return q[0] < q[2] ? VG_PAIR_FIRST_ROOT : VG_PAIR_SECOND_ROOT;
 }
 
 static unsigned levels_of(const struct vg_expand *e, const uint32_t f[3],
@@ -211,12 +257,34 @@ static void other_levels(int mixed, const uint32_t f[3], const unsigned n[3],
   }
 }
 
-void vg_expand_face(const struct vg_expand *e, size_t face,
-                    const uint32_t foot[3], const uint32_t base[3],
-                    struct vg_cell_sink *s)
+/* The levels of both faces of a pair above those of its lower columns. */
+static void above_pair(const struct vg_expand *e, size_t face,
+                       const uint32_t q[4], const uint32_t base[4],
+                       struct vg_cell_sink *s)
 {
-  assert(face < e->columns->n_face && s);
+  const size_t pair[2] = { face, e->partner[face] };
+  const unsigned low = vg_pair_levels(e, q);
 
+  for (int i = 0; i < 2; i++) {
+    const uint32_t *f = e->columns->face[pair[i]];
+    uint32_t p[3];
+    unsigned n[3];
+
+    levels_of(e, f, n);
+    for (int k = 0; k < 3; k++) {
+      int j = 0;
+
+      while (q[j] != f[k]) j++;
+      p[k] = base[j] + low - 1;
+    }
+    other_levels(e->mixed, f, n, low, p, s);
+  }
+}
+
+static void single_face(const struct vg_expand *e, size_t face,
+                        const uint32_t foot[3], const uint32_t base[3],
+                        struct vg_cell_sink *s)
+{
   const uint32_t *f = e->columns->face[face];
   uint32_t p[3] = { foot[0], foot[1], foot[2] }, h[3];
   unsigned n[3], low = levels_of(e, f, n);
@@ -225,6 +293,37 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
   rise_from_wall(f, alone(e, f), p, h, s);
   if (low > 1) whole_levels(e->mixed, f, low - 1, p, s);
   other_levels(e->mixed, f, n, low ? low : 1, p, s);
+}
+
+void vg_expand_face(const struct vg_expand *e, size_t face,
+                    const uint32_t foot[4], const uint32_t base[4],
+                    uint32_t middle, struct vg_cell_sink *s)
+{
+  assert(face < e->columns->n_face && s);
+
+  uint32_t q[4];
+
+  switch (vg_expand_corners(e, face, q)) {
+  case 3: single_face(e, face, foot, base, s); break;
+  case 4:
+    vg_expand_pair(e, face, q, start_of(e, q), foot, base, middle, s);
+    above_pair(e, face, q, base, s);
+    break;
+  }
+}
+
+/* The cell on top of a pair whose columns have equal levels is a tetrahedron of
+ * the top and the middle. */
+static int top_of_pair(const struct vg_expand *e, size_t face, uint32_t node[6])
+{
+  static const uint32_t tet[4] = { 3, 5, 4, 6 };
+  const size_t first = face < e->partner[face] ? face : e->partner[face];
+  uint32_t q[4];
+
+  vg_pair_corners(e, first, q);
+  if (vg_mark_n(e->mark[q[0]]) != vg_mark_n(e->mark[q[2]])) return 0;
+  memcpy(node, tet, sizeof tet);
+  return 4;
 }
 
 /* Corners at level 0, with those of one root merged. */
@@ -245,12 +344,15 @@ int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
 
   const uint32_t *f = e->columns->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned n[3], high = 0;
 
   levels_of(e, f, n);
   for (int k = 0; k < 3; k++) high = n[k] > high ? n[k] : high;
   if (!high) return 0;
+  if (e->partner && e->partner[face] != VG_NO_INDEX &&
+      top_of_pair(e, face, node))
+    return 4;
   merge_roots(e->columns, f, p);
   for (int k = 0; k < 3; k++) {
     h[k] = n[k] == high ? (uint32_t)k + 3 : VG_NO_INDEX;
@@ -274,7 +376,7 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
 
   const uint32_t *f = c->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned together = 0;
   int n = 0;
 
@@ -299,12 +401,36 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   return n;
 }
 
-/* Adds the cells of a face to the counts. */
+/* Adds the cells of a pair to the counts. */
+static void count_pair(const struct vg_expand *e, size_t face,
+                       const uint32_t q[4], size_t count[VG_N_KIND])
+{
+  const size_t pair[2] = { face, e->partner[face] };
+  const unsigned low = vg_pair_levels(e, q);
+  const int prism = start_of(e, q) == VG_PAIR_TOGETHER;
+
+  count[VG_KIND_PRI] += (size_t)prism;
+  count[VG_KIND_HEX] += low - 2;
+  count[VG_KIND_PYR] += 5 + (size_t)!prism;
+  count[VG_KIND_TET] += 2 + (size_t)!prism;
+  for (int i = 0; i < 2; i++) {
+    unsigned n[3], high = 0, more = 0;
+
+    levels_of(e, e->columns->face[pair[i]], n);
+    for (int k = 0; k < 3; k++) {
+      more += n[k] > low;
+      high = n[k] > high ? n[k] : high;
+    }
+    count[more == 2 ? VG_KIND_PYR : VG_KIND_TET] += high - low;
+  }
+}
+
+/* Adds the cells of a single face to the counts. */
 static void count_face(const struct vg_expand *e, const uint32_t f[3],
                        size_t count[VG_N_KIND])
 {
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned n[3], low = levels_of(e, f, n), high, mid;
 
   for (int k = 0; k < 3; k++) {
@@ -336,9 +462,13 @@ static void count_blocks(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t b = first; b < end; b++) {
     size_t count[VG_N_KIND] = { 0 }, i = b * VG_FACE_BLOCK;
+    uint32_t q[4];
 
     for (; i < (b + 1) * VG_FACE_BLOCK && i < e->columns->n_face; i++)
-      count_face(e, e->columns->face[i], count);
+      switch (vg_expand_corners(e, i, q)) {
+      case 3: count_face(e, q, count); break;
+      case 4: count_pair(e, i, q, count); break;
+      }
     for (int k = 0; k < VG_N_KIND; k++) e->cell[k][b] = count[k];
   }
 }
@@ -369,9 +499,12 @@ void vg_expand_count(struct vg_expand *e)
 static int border_together(const struct vg_expand *e, const uint32_t border[2],
                            size_t level)
 {
-  unsigned shared = (e->mark[border[0]] | e->mark[border[1]]) & VG_MARK_SHARED;
+  const struct vg_column *c = e->columns->column;
+  const int shared = ((e->mark[border[0]] | e->mark[border[1]]) &
+                      VG_MARK_SHARED) != 0;
+  const int one_root = c[border[0]].root == c[border[1]].root;
 
-  return e->mixed && (level || !shared);
+  return e->mixed && (level || !(shared || one_root));
 }
 
 /* Whether the second column of a boundary edge is raised before the first. */

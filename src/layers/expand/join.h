@@ -69,7 +69,8 @@ int vg_join_wall_cells(const struct vg_columns *columns, size_t face,
 /** Counts the cells of all kinds that vg_layers_join would make of the columns.
  * Front and field are not needed. Runs in parallel at memory speed.
  * VG_ERR_MEMORY. */
-vg_status vg_layers_count(const struct vg_layers *layers,
+vg_status vg_layers_count(const struct vg_mesh *surface,
+                          const struct vg_layers *layers,
                           enum vg_layer_cells cells, int threads, uint64_t *n,
                           struct vg_error *err);
 

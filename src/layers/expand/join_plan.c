@@ -124,8 +124,8 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
     st = vg_fail_memory(err, "joining layers and field");
     goto done;
   }
-  VG_TRY(vg_expand_open(&p->expand, p->columns, cells == VG_LAYER_MIXED,
-                        threads, err));
+  VG_TRY(vg_expand_open(&p->expand, surface, p->columns,
+                        cells == VG_LAYER_MIXED, threads, err));
   VG_TRY(number_points(p, n_field_point, err));
   VG_TRY(vg_join_boundary(p, err));
   check_boundary(p);

@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
+#include "layers/expand/pairs.h"
 #include "layers/expand/slices_parts.h"
 
 struct run {
@@ -19,7 +20,8 @@ struct run {
   size_t n_face;     /* Number of faces with levels. */
   size_t n_column;
   uint32_t *face;        /* [n_face] faces of the plan. */
-  uint32_t (*corner)[3]; /* [n_face] local columns. */
+  uint32_t (*corner)[4]; /* [n_face] local columns. */
+  uint8_t *n_corner;     /* [n_face] 3, or 4 for a pair. */
   uint32_t *column;      /* [n_column] columns of the plan. */
   uint32_t *foot, *base; /* [n_column] local points at levels 0 and 1. */
   struct vg_table table; /* Table of columns, then of points at level 0. */
@@ -27,9 +29,11 @@ struct run {
 
 static int has_levels(const struct vg_expand *e, size_t face)
 {
-  const uint32_t *f = e->columns->face[face];
+  uint32_t f[4];
+  const int n = vg_expand_corners(e, face, f);
 
-  return vg_mark_n(e->mark[f[0]] | e->mark[f[1]] | e->mark[f[2]]) > 0;
+  return n == 4 ||
+         (n == 3 && vg_mark_n(e->mark[f[0]] | e->mark[f[1]] | e->mark[f[2]]));
 }
 
 static size_t end_face(const struct run *r)
@@ -46,14 +50,15 @@ static vg_status reserve_run(struct run *r, struct vg_error *err)
 
   for (size_t i = r->first * VG_FACE_BLOCK; i < end_face(r); i++)
     r->n_face += (size_t)has_levels(e, i);
-  most = 3 * r->n_face < e->columns->n_column ? 3 * r->n_face
+  most = 4 * r->n_face < e->columns->n_column ? 4 * r->n_face
                                               : e->columns->n_column;
   r->face = vg_alloc(r->n_face, sizeof *r->face);
   r->corner = vg_alloc(r->n_face, sizeof *r->corner);
+  r->n_corner = vg_alloc(r->n_face, sizeof *r->n_corner);
   r->column = vg_alloc(most, sizeof *r->column);
   r->foot = vg_alloc(most, sizeof *r->foot);
   r->base = vg_alloc(most, sizeof *r->base);
-  if (r->face && r->corner && r->column && r->foot && r->base &&
+  if (r->face && r->corner && r->n_corner && r->column && r->foot && r->base &&
       !vg_table_init(&r->table, most))
     return VG_OK;
   return vg_fail_memory(err, "a slice of the layers");
@@ -63,6 +68,7 @@ static void release_run(struct run *r)
 {
   free(r->face);
   free(r->corner);
+  free(r->n_corner);
   free(r->column);
   free(r->foot);
   free(r->base);
@@ -75,9 +81,12 @@ static void list_columns(struct run *r)
   size_t n = 0;
 
   for (size_t i = r->first * VG_FACE_BLOCK; i < end_face(r); i++) {
+    uint32_t column[4];
+
     if (!has_levels(e, i)) continue;
-    for (int k = 0; k < 3; k++) {
-      uint32_t c = e->columns->face[i][k];
+    r->n_corner[n] = (uint8_t)vg_expand_corners(e, i, column);
+    for (int k = 0; k < r->n_corner[n]; k++) {
+      uint32_t c = column[k];
       uint32_t *at;
 
       VG_TABLE_FIND(&r->table, at, vg_hash_1(c), r->column[*at] == c);
@@ -128,7 +137,7 @@ static vg_status reserve_slice(const struct run *r, size_t n_point,
                                struct vg_layer_slice *at, struct vg_slice *s,
                                struct vg_error *err)
 {
-  static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
+  static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6, 8 };
   const struct vg_expand *e = &r->p->expand;
   int refused;
 
@@ -152,6 +161,14 @@ static vg_status reserve_slice(const struct run *r, size_t n_point,
   return refused ? vg_fail_memory(err, "a slice of the layers") : VG_OK;
 }
 
+/* Local point in the middle of the pair of face i, which this slice owns. */
+static uint32_t middle_of(const struct run *r, size_t i)
+{
+  const struct vg_expand *e = &r->p->expand;
+
+  return (uint32_t)(e->middle[r->face[i]] - e->inner[r->first]);
+}
+
 static void place_points(const struct run *r, struct vg_layer_slice *at,
                          size_t n_own)
 {
@@ -170,20 +187,31 @@ static void place_points(const struct run *r, struct vg_layer_slice *at,
     vg_expand_column(e, surface, c, at->x + r->base[i]);
     for (unsigned l = 0; l < n; l++) at->id[r->base[i] + l] = e->base[c] + l;
   }
+  for (size_t i = 0; i < r->n_face; i++) {
+    const uint32_t p = r->n_corner[i] == 4 ? middle_of(r, i) : VG_NO_INDEX;
+
+    if (p == VG_NO_INDEX) continue;
+    vg_pair_middle(e, surface, r->face[i], at->x[p]);
+    at->id[p] = e->middle[r->face[i]];
+  }
 }
 
 static void make_cells(const struct run *r, struct vg_layer_slice *at)
 {
   struct vg_cell_sink s = { (uint32_t(*)[4])at->cell[VG_SLICE_TET],
                             (uint32_t(*)[5])at->cell[VG_SLICE_PYR],
-                            (uint32_t(*)[6])at->cell[VG_SLICE_PRI] };
+                            (uint32_t(*)[6])at->cell[VG_SLICE_PRI],
+                            (uint32_t(*)[8])at->cell[VG_SLICE_HEX] };
 
   for (size_t i = 0; i < r->n_face; i++) {
-    const uint32_t *c = r->corner[i];
-    const uint32_t foot[3] = { r->foot[c[0]], r->foot[c[1]], r->foot[c[2]] };
-    const uint32_t base[3] = { r->base[c[0]], r->base[c[1]], r->base[c[2]] };
+    uint32_t foot[4], base[4];
 
-    vg_expand_face(&r->p->expand, r->face[i], foot, base, &s);
+    for (int k = 0; k < r->n_corner[i]; k++) {
+      foot[k] = r->foot[r->corner[i][k]];
+      base[k] = r->base[r->corner[i][k]];
+    }
+    vg_expand_face(&r->p->expand, r->face[i], foot, base,
+                   r->n_corner[i] == 4 ? middle_of(r, i) : VG_NO_INDEX, &s);
   }
 }
 

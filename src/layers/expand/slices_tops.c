@@ -10,6 +10,7 @@
 #include "base/table.h"
 #include "base/tri_key.h"
 #include "core/judge/quality.h"
+#include "layers/expand/pairs.h"
 #include "layers/expand/slices_parts.h"
 
 struct tops {
@@ -46,7 +47,7 @@ static vg_status make_table(struct tops *t, struct vg_error *err)
 static double volume_below(const struct tops *t, size_t face)
 {
   const struct vg_columns *c = t->p->columns;
-  double d[VG_LEVELS_MAX + 1], column[VG_LEVELS_MAX + 1][3], x[6][3];
+  double d[VG_LEVELS_MAX + 1], column[VG_LEVELS_MAX + 1][3], x[7][3];
   uint32_t node[6];
   int n_node = vg_expand_top(&t->p->expand, face, node);
 
@@ -58,6 +59,12 @@ static double volume_below(const struct tops *t, size_t face)
     vg_column_points(c, t->p->surface, i, d, column);
     memcpy(x[k], column[n ? n - 1 : 0], sizeof *x);
     memcpy(x[3 + k], column[n], sizeof *x);
+  }
+  if (t->p->expand.partner && t->p->expand.partner[face] != VG_NO_INDEX) {
+    const uint32_t other = t->p->expand.partner[face];
+
+    vg_pair_middle(&t->p->expand, t->p->surface, other < face ? other : face,
+                   x[6]);
   }
   return vg_cell_volume((const double(*)[3])x, n_node - 4, node);
 }

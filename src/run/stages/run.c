@@ -271,7 +271,7 @@ static vg_status count_layers(const struct vg_run *r,
 
   *n = 0;
   if (!s->max_cells || !layers) return VG_OK;
-  st = vg_layers_count(layers, (enum vg_layer_cells)s->cells, r->threads, n,
+  st = vg_layers_count(surface, layers, (enum vg_layer_cells)s->cells, r->threads, n,
                        err);
   if (st >= 0 && *n > (uint64_t)s->max_cells)
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
