@@ -188,7 +188,7 @@ VG_WITHIN void measure_lane(struct vg_solver_batch *b, size_t t)
   b->weight[t] = figures.weight;
 }
 
-/* All lanes, also those that are not used. */
+/* All lanes, also the unused ones. */
 VG_WITHIN void measure_all(struct vg_solver_batch *b)
 {
   for (size_t t = 0; t < VG_SOLVER_BATCH; t++) measure_lane(b, t);
