@@ -40,6 +40,7 @@ static void check_cuts(const struct vg_mesh *m, const struct vg_sizing *sizing,
 
       judge_cut(&c, sizing, threads, 0, &r, NULL);
       assert_same_report(&r, whole);
+      assert_int_equal(r.has_solver, r.is_valid);
     }
     cut_release(&c);
   }

@@ -262,9 +262,10 @@ static void pair(const struct vg_mesh *m, struct vg_stats *f,
   struct vg_error err = VG_ERROR_INIT;
 
   assert_non_null(volume);
-  vg_judge_shape(m, 0, NULL, volume, f);
+  vg_judge_shape(m, 0, NULL, volume, f, NULL);
   assert_true(vg_faces_can_pair(m, u));
-  assert_int_equal(vg_judge_faces(m, volume, f, u, n_component, &err), VG_OK);
+  assert_int_equal(vg_judge_faces(m, volume, f, NULL, u, n_component, &err),
+                   VG_OK);
   free(volume);
 }
 

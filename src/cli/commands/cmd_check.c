@@ -23,6 +23,7 @@ struct arguments {
   const char *sizes; /* NULL: not on the command line */
   struct vg_cli_overrides kept;
   int *written; /* set to 1 once the report has been printed as JSON */
+  int *missed;  /* set to 1 if a limit on the mesh is not met */
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -135,19 +136,22 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   const struct vg_turned *turned = &info->turned;
   const struct vg_inner_faces *inner = &info->inner;
   struct vg_mesh_report r;
+  struct vg_mesh_limit limit[VG_MESH_LIMITS];
   vg_status st;
 
   memset(&r, 0, sizeof r);
   VG_TRY(judge(a, p, m, &r, err));
   if (!r.is_valid) st = not_valid(a, turned, err);
+  *a->missed = vg_mesh_limits_missed(&p->asked, &r, limit) > 0;
   if (a->one.json) {
-    json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o}", "vanguard",
+    json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o s:o}", "vanguard",
                           VG_VERSION, "file", vg_text_json(a->one.file), "ok",
                           r.is_valid, "cells_turned", (json_int_t)turned->cell,
                           "inner_faces", (json_int_t)inner->n_face, "size",
                           vg_report_size_json(m), "patches",
                           vg_report_patches_json(m), "mesh",
-                          vg_report_mesh_json(&r, m));
+                          vg_report_mesh_json(&r, m), "limits_missed",
+                          vg_report_mesh_limits_json(&p->asked, &r));
 
     if (!r.is_valid) vg_report_error_json(o, err);
     print_json(o, a);
@@ -166,6 +170,8 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
       printf("  note: %s\n", p->notes.text[i]);
     vg_report_mesh_text(stdout, &r, 1);
   }
+  fflush(stdout);
+  vg_report_mesh_limits_text(stderr, &p->asked, &r);
 done:
   return st;
 }
@@ -262,11 +268,11 @@ int vg_cmd_check(int argc, char **argv)
       "surface, report how 'vanguard mesh' with the same options would "
       "process it: flow domain, patches, repairs, remeshing, and every defect "
       "for which it would be rejected.\v"
-      "Exit status: 0 if the mesh is valid or the surface is accepted, 1 "
-      "otherwise."
+      "Exit status: 0 if the mesh is valid or the surface is accepted, 4 if a "
+      "limit on the mesh is not met, 1 otherwise."
   };
-  int written = 0;
-  struct arguments a = { .written = &written };
+  int written = 0, missed = 0;
+  struct arguments a = { .written = &written, .missed = &missed };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
@@ -280,5 +286,6 @@ int vg_cmd_check(int argc, char **argv)
   if (st < 0 && a.one.json && !written) print_failure(&a, &err);
   vg_cli_options_free(&options);
   free(a.kept.set);
-  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+  if (st < 0) return vg_cli_fail(&err);
+  return missed ? VG_EXIT_LIMIT : VG_EXIT_DONE;
 }

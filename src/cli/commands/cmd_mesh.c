@@ -396,8 +396,15 @@ static int report_failure(struct run *r, const struct arguments *a,
   return vg_cli_fail(err);
 }
 
+static void report_missed(FILE *to, const struct run *r)
+{
+  vg_report_missed_text(to, &r->layers, &r->problem.boundary.surface);
+  vg_report_mesh_limits_text(to, &r->problem.asked, &r->mesh.judge);
+}
+
 static int report_success(struct run *r, const struct arguments *a)
 {
+  struct vg_mesh_limit limit[VG_MESH_LIMITS];
   int status = VG_EXIT_DONE;
 
   if (r->mesh.rank) return status;
@@ -405,11 +412,13 @@ static int report_success(struct run *r, const struct arguments *a)
   if (a->json) status = print_json(r, 1, NULL);
   else print_report(stdout, r);
   if (vg_log()) print_report(vg_log(), r);
-  if (!r->layers.n_missed || status != VG_EXIT_DONE) return status;
+  if (status != VG_EXIT_DONE) return status;
+  if (!r->layers.n_missed &&
+      !vg_mesh_limits_missed(&r->problem.asked, &r->mesh.judge, limit))
+    return status;
   fflush(stdout);
-  vg_report_missed_text(stderr, &r->layers, &r->problem.boundary.surface);
-  if (vg_log())
-    vg_report_missed_text(vg_log(), &r->layers, &r->problem.boundary.surface);
+  report_missed(stderr, r);
+  if (vg_log()) report_missed(vg_log(), r);
   return VG_EXIT_LIMIT;
 }
 

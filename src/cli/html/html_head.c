@@ -34,6 +34,7 @@ static void flow(struct page *p)
 void vg_html_head(struct page *p)
 {
   const struct vg_problem *q = p->h->problem;
+  size_t n;
 
   vg_page_markup(p, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
                     "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
@@ -58,6 +59,12 @@ void vg_html_head(struct page *p)
                    "not met</span>",
                    p->h->layers->n_missed,
                    p->h->layers->n_missed > 1 ? "s" : "");
+  n = json_array_size(vg_page_json(p, "limits_missed"));
+  if (n)
+    vg_page_format(p,
+                   " <span class=\"badge bad\">%zu limit%s on the mesh "
+                   "not met</span>",
+                   n, n > 1 ? "s" : "");
   vg_page_markup(p, "</p>\n");
   flow(p);
   vg_page_markup(p, "</header>\n<main>\n\n");
@@ -130,6 +137,23 @@ static void missed(struct list *l)
       vg_page_real(l->p, m->got, 10);
       vg_page_markup(l->p, m->unit);
     }
+    end(l);
+  }
+}
+
+static void mesh_missed(struct list *l)
+{
+  const json_t *all = vg_page_json(l->p, "limits_missed");
+
+  for (size_t i = 0; i < json_array_size(all); i++) {
+    const json_t *m = json_array_get(all, i);
+
+    if (!begin(l, WEIGHT_BAD)) return;
+    vg_page_format(l->p, "Mesh: %s is ",
+                   json_string_value(json_object_get(m, "limit")));
+    vg_page_real(l->p, json_number_value(json_object_get(m, "required")), 10);
+    vg_page_markup(l->p, ", reached ");
+    vg_page_real(l->p, json_number_value(json_object_get(m, "got")), 10);
     end(l);
   }
 }
@@ -255,6 +279,7 @@ void vg_html_first(struct page *p)
   vg_page_markup(p, "<ul class=\"first\">\n");
   for (l.now = WEIGHT_BAD; l.now < WEIGHTS; l.now++) {
     missed(&l);
+    mesh_missed(&l);
     layers_short(&l);
     surface_changed(&l);
     mesh_lines(&l);

@@ -44,6 +44,7 @@ static const struct group {
   { "mesher", "Subdomains, ranks and threads" },
   { "layers", "Viscous layers" },
   { "min_full", "Limits on the layers" },
+  { "max_non_orthogonality", "Limits on the mesh" },
 };
 
 static const struct group *group_at(const char *name)

@@ -208,15 +208,24 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
   const struct vg_flat_part part = { j->flat, s->id, s->point_at, s->n_own,
                                      s->kind > 1 };
   int classify = j->flat && (k->is_field || j->edges_of == VG_JUDGED_WHOLE);
+  const uint64_t *n = j->s->n_cell;
+  const uint64_t first[VG_CELL_KINDS] = {
+    s->cell_at[VG_SLICE_TET], n[VG_SLICE_TET] + s->cell_at[VG_SLICE_PYR],
+    n[VG_SLICE_TET] + n[VG_SLICE_PYR] + s->cell_at[VG_SLICE_PRI], 0
+  };
   float *volume = vg_alloc(k->n_cell, sizeof *volume);
+  struct vg_solver_sweep *solver = &k->w->solver;
   size_t n_component = 0;
   vg_status st = VG_OK;
 
   if (!volume) return vg_fail_memory(err, "the volumes of the cells");
+  VG_TRY(vg_solver_begin(solver, &k->view, first, volume, k->f, err));
   vg_judge_shape(&k->view, s->cell_at[VG_SLICE_TET], classify ? &part : NULL,
-                 volume, k->f);
-  VG_TRY(
-    vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component, err));
+                 volume, k->f, solver);
+  VG_TRY(vg_judge_faces(&k->view, volume, k->f, solver, &k->unpaired,
+                        &n_component, err));
+  VG_TRY(vg_judge_solver_slice(j, (int)(k->w - j->worker), s, solver,
+                               &k->unpaired, err));
   k->first_component = (uint32_t)atomic_fetch_add(&j->n_here, n_component);
   if (k->is_field) k->w->n_field_component += n_component;
   VG_TRY(judge_sizes(k, err));
@@ -233,7 +242,8 @@ static void note_size(const struct work *k)
 {
   const struct vg_slice *s = k->slice;
   size_t n = s->n_point * (sizeof *s->x + sizeof *s->id) +
-             s->n_own * sizeof *s->own + k->n_cell * sizeof(float);
+             s->n_own * sizeof *s->own + k->n_cell * sizeof(float) +
+             vg_solver_bytes(&k->view);
 
   for (size_t kind = 0; kind < VG_SLICE_KINDS; kind++)
     n += s->n_cell[kind] * (4 + kind) * sizeof(uint32_t);

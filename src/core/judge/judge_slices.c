@@ -16,6 +16,9 @@
 /* Number of waiting faces from which they are matched early: 4 MB. */
 #define LEAST_WAITING ((size_t)1 << 17)
 
+/* The same for the sides of faces that are measured for solvers: 5 MB. */
+#define LEAST_WAITING_SIDES ((size_t)1 << 15)
+
 /* --- preparation ---------------------------------------------------------- */
 
 static vg_status make_workers(struct vg_slices_judgement *j,
@@ -80,6 +83,7 @@ static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
                    (unsigned long long)j->s->n_point);
   VG_TRY(make_workers(j, err));
   VG_TRY(make_places(j, err));
+  VG_TRY(vg_judge_solver_init(j, err));
   j->n_word = (size_t)(j->s->n_point / 64 + 1);
   for (int q = 0; q < j->n_judged; q++) {
     j->used[q] = vg_calloc(j->n_word, sizeof *j->used[q]);
@@ -105,6 +109,7 @@ static void release(struct vg_slices_judgement *j)
       free(w->parent[q]);
     }
   }
+  vg_judge_solver_release(j);
   free(j->worker);
   for (int q = 0; q < VG_JUDGED; q++) free(j->used[q]);
   free(j->place);
@@ -116,7 +121,8 @@ void vg_judge_note_bytes(struct vg_slices_judgement *j, size_t more)
 {
   size_t n = more + j->n_place * sizeof *j->place +
              (size_t)j->n_judged * j->n_word * sizeof **j->used +
-             j->waiting.most * sizeof(struct vg_face_item);
+             j->waiting.most * sizeof(struct vg_face_item) +
+             vg_judge_solver_bytes(j);
 
   for (int i = 0; i < j->n_worker; i++) {
     const struct vg_judge_worker *w = &j->worker[i];
@@ -356,6 +362,7 @@ static vg_status sum_stats(struct vg_slices_judgement *j, int q,
                      err));
   VG_TRY(vg_comm_max(j->comm, 3 + VG_MOST_N, extreme, err));
   VG_TRY(gather_worst(j->comm, f, err));
+  VG_TRY(vg_judge_solver_gather(j->comm, f, err));
   f->angle_min = -extreme[0];
   f->angle_max = extreme[1];
   f->radius_ratio_min = -extreme[2];
@@ -395,7 +402,9 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
 
   for (int q = 0; q < j->n_judged; q++)
     vg_stats_report(j->worker[0].figures[q], n_component[q],
-                    j->edges_of == q ? has : 0, &r[q]);
+                    (j->edges_of == q ? has : 0) |
+                      (q == VG_JUDGED_WHOLE ? VG_HAS_SOLVER : 0),
+                    &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
   r[VG_JUDGED_WHOLE].bytes_shared = j->bytes;
   for (int i = 0; i < j->n_worker; i++)
@@ -531,6 +540,7 @@ static vg_status judge_again(struct vg_slices_judgement *j,
   vg_status st;
 
   vg_waiting_items_init(&again.waiting, LEAST_WAITING);
+  vg_waiting_items_init(&again.waiting_side, LEAST_WAITING_SIDES);
   VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
   if (!again.n_suspect) goto done;
   st = prepare(&again, err);
@@ -576,6 +586,7 @@ vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
   vg_status st;
 
   vg_waiting_items_init(&j.waiting, LEAST_WAITING);
+  vg_waiting_items_init(&j.waiting_side, LEAST_WAITING_SIDES);
   st = prepare(&j, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(judge(&j, front_faces, r, err));

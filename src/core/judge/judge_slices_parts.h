@@ -4,7 +4,8 @@
  *
  * First, every thread checks slices one by one (judge_slice.c) and keeps the
  * data that other slices need. Then positions, faces and edges are matched
- * (judge_match.c). Finally the figures are summed and reported
+ * (judge_match.c), and faces and cells for the figures in the terms of solvers
+ * (judge_solver.c). Finally the figures are summed and reported
  * (judge_slices.c). */
 #ifndef VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
 #define VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
@@ -12,8 +13,9 @@
 #include <stdatomic.h>
 
 #include "base/rendezvous.h"
+#include "base/table.h"
 #include "core/judge/judge_slices.h"
-#include "core/judge/quality_parts.h"
+#include "core/judge/quality_solver.h"
 
 enum { VG_JUDGED_WHOLE, VG_JUDGED_FIELD, VG_JUDGED };
 
@@ -58,8 +60,12 @@ static inline struct vg_place_item vg_place_item(const double x[3])
 struct vg_judge_worker {
   struct vg_item_blocks face, edge;
   struct vg_item_blocks place; /* keys of positions */
-  struct vg_items crowd;       /* keys that several points have */
-  struct vg_items suspect;     /* keys of faces that do not join two sides */
+  /* For the figures in the terms of solvers: sweep over the present slice,
+   * sides of faces between slices, and cells that have several of them. */
+  struct vg_solver_sweep solver;
+  struct vg_item_blocks side, rest;
+  struct vg_items crowd;   /* keys that several points have */
+  struct vg_items suspect; /* keys of faces that do not join two sides */
   /* Figures of slices: first of layers and of the field; later of the whole
    * mesh and of the field. */
   struct vg_stats *figures[VG_JUDGED];
@@ -91,11 +97,13 @@ struct vg_slices_judgement {
                                 mesh */
   uint64_t *used[VG_JUDGED]; /* [n_word] points used by cells */
   size_t n_place;
-  double (*place)[3];              /* [n_place] positions of the boundary's
-                                      points */
-  atomic_uint_fast64_t n_here;     /* components of the slices of this rank */
-  uint64_t first_here;             /* number of the first one in the mesh */
-  uint64_t n_all, n_all_field;     /* sums of the components of all slices */
+  double (*place)[3];          /* [n_place] positions of the boundary's
+                                  points */
+  atomic_uint_fast64_t n_here; /* components of the slices of this rank */
+  uint64_t first_here;         /* number of the first one in the mesh */
+  uint64_t n_all, n_all_field; /* sums of the components of all slices */
+  struct vg_table bound;       /* faces of the boundary by their nodes */
+  struct vg_waiting_items waiting_side; /* sides of faces of all threads */
   struct vg_waiting_items waiting; /* faces of all threads whose other sides
                                       are in slices not yet checked */
   /* Faces that did not join two sides when all other faces were matched in
@@ -125,6 +133,30 @@ vg_status vg_judge_thin(struct vg_slices_judgement *j, int worker,
 
 /** Match positions, then faces, then edges. Collective. */
 vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err);
+
+/** Prepare the figures in the terms of solvers, and release what they use. */
+vg_status vg_judge_solver_init(struct vg_slices_judgement *j,
+                               struct vg_error *err);
+void vg_judge_solver_release(struct vg_slices_judgement *j);
+
+/** Present memory, for vg_judge_note_bytes. */
+size_t vg_judge_solver_bytes(const struct vg_slices_judgement *j);
+
+/** Finish the sweep over a slice, whose own faces have been matched, and keep
+ * the faces between slices. */
+vg_status vg_judge_solver_slice(struct vg_slices_judgement *j, int worker,
+                                const struct vg_slice *s,
+                                struct vg_solver_sweep *sweep,
+                                const struct vg_unpaired *unpaired,
+                                struct vg_error *err);
+
+/** Match the faces between slices. Collective. */
+vg_status vg_judge_solver_match(struct vg_slices_judgement *j,
+                                struct vg_error *err);
+
+/** Unite the worst places of all ranks. Collective. */
+vg_status vg_judge_solver_gather(struct vg_comm *comm, struct vg_stats *f,
+                                 struct vg_error *err);
 
 /** Count the components of cells. *n_component out: [n_judged]. Collective. */
 vg_status vg_judge_components(struct vg_slices_judgement *j,

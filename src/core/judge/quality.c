@@ -12,7 +12,7 @@
 #include "base/memory.h"
 #include "base/table.h"
 #include "core/geometry/volume.h"
-#include "core/judge/quality_parts.h"
+#include "core/judge/quality_solver.h"
 
 /* The inward faces of formats.md 2.3, with reversed orientation. */
 const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
@@ -183,23 +183,31 @@ static vg_status judge_all(const struct vg_mesh *m,
                            size_t n_layer, struct vg_stats *f,
                            size_t *n_component, struct vg_error *err)
 {
+  const uint64_t first[VG_CELL_KINDS] = { 0, m->n_tet, m->n_tet + m->n_pyr,
+                                          m->n_tet + m->n_pyr + m->n_pri };
   float *volume = NULL;
+  struct vg_solver_sweep *solver = vg_calloc(1, sizeof *solver);
   vg_status st;
 
   VG_TRY(count_unused(m, &f->n, err));
   VG_TRY(count_duplicates(m, &f->n, err));
   volume = vg_alloc(f->n.n_cell, sizeof *volume);
-  if (!volume) {
+  if (!volume || !solver) {
     st = vg_fail_memory(err, "the volumes of the cells");
     goto done;
   }
-  vg_judge_shape(m, 0, NULL, volume, f);
-  VG_TRY(vg_judge_faces(m, volume, f, NULL, n_component, err));
+  VG_TRY(vg_solver_begin(solver, m, first, volume, f, err));
+  vg_judge_shape(m, 0, NULL, volume, f, solver);
+  VG_TRY(vg_judge_faces(m, volume, f, solver, NULL, n_component, err));
+  vg_solver_finish(solver, NULL);
+  vg_solver_release(solver);
   free(volume);
   volume = NULL;
   if (has & VG_HAS_SIZING)
     VG_TRY(judge_sizes(m, sizing, has & VG_HAS_METRIC, n_layer, f, err));
 done:
+  if (solver) vg_solver_release(solver);
+  free(solver);
   free(volume);
   return st;
 }
@@ -226,7 +234,7 @@ static vg_status judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (!sound) has = 0;
   if (sound) VG_TRY(judge_all(m, sizing, has, n_layer, f, &n_component, err));
-  vg_stats_report(f, n_component, has, report);
+  vg_stats_report(f, n_component, sound ? has | VG_HAS_SOLVER : 0, report);
   if (!sound) goto done;
   vg_mesh_bounds(m, lo, hi);
   report->enclosed = vg_enclosed_volume(m, lo, hi);

@@ -13,6 +13,7 @@
 
 #define VG_HIST_ANGLE 36 /* bins of 5 degrees */
 #define VG_HIST_UNIT 20  /* bins of 0.05 */
+#define VG_HIST_SKEW 20  /* bins of 0.25 */
 #define VG_WORST 10
 
 /* Lengths in the metric are counted in bins of equal ratio, twelve per octave,
@@ -25,6 +26,60 @@ struct vg_worst_cell {
   size_t cell;                  /* 0-based: tets, pyramids, prisms, hexes */
   double value, at[3];          /* minimum dihedral in degrees, centroid */
   struct vg_flat_points points; /* of a flat cell, if has_flat */
+};
+
+/* A face or cell with one of the worst figures for solvers. */
+struct vg_worst_place {
+  size_t cell;         /* 0-based, as in struct vg_worst_cell; the lower one of
+                          both cells of a face */
+  double value, at[3]; /* figure; centre of the face or cell */
+};
+
+/* Limits beyond which checkMesh of OpenFOAM counts a face or cell. */
+#define VG_LIMIT_ANGLE 70.0 /* degrees */
+#define VG_LIMIT_SKEWNESS 4.0
+#define VG_LIMIT_WEIGHT 0.05
+#define VG_LIMIT_VOLUME_RATIO 0.01
+#define VG_LIMIT_DETERMINANT 0.001
+
+/* Figures that have a list of worst places. */
+enum { VG_WORST_ANGLE, VG_WORST_SKEWNESS, VG_WORST_QUALITY, VG_WORST_LISTS };
+
+/* Quality in the terms of solvers with unknowns in the cells. A is the area
+ * vector of a face, f the vector from the centre of a cell to that of its face,
+ * c the vector to the centre of its neighbour. Centres, areas and volumes are
+ * computed as in OpenFOAM: a quadrilateral consists of the triangles around the
+ * mean of its corners, a cell of the pyramids from its faces to the mean of
+ * their centres. */
+struct vg_solver_quality {
+  size_t n_face, n_boundary_face; /* between cells; on the boundary */
+  /* Non-orthogonality of faces between cells: angle between A and c, in
+   * degrees. The mean is that of the cosines, as an angle. */
+  double angle_max, angle_mean;
+  size_t n_angle; /* number above VG_LIMIT_ANGLE */
+  /* Skewness of all faces: distance from the centre of the face to the point
+   * where c passes through it, over the extent of the face in this direction
+   * or 0.2 |c|, whichever is larger. On the boundary c is along A, of length
+   * f A / |A|, and 0.4 takes the place of 0.2. */
+  double skewness_max;
+  size_t n_skewness;
+  /* Weight of the linear interpolation on a face between cells: the smaller one
+   * of the distances of both centres from the face along A, over their sum. */
+  double weight_min;
+  size_t n_weight;
+  double volume_ratio_min; /* smaller volume over larger one, of neighbours */
+  size_t n_volume_ratio;
+  /* Determinant of sum A A^T / (mean |A|)^2 over the faces of a cell that have
+   * a neighbour, over 8: 1 for a cube. */
+  double determinant_min;
+  size_t n_determinant;
+  /* Orthogonal quality of Fluent: the smallest cosine of the angles between A
+   * and f, and between A and c, of the faces of a cell. */
+  double quality_min, quality_mean;
+  size_t hist_angle[VG_HIST_ANGLE]; /* bins of 5 degrees */
+  size_t hist_skewness[VG_HIST_SKEW], hist_quality[VG_HIST_UNIT];
+  struct vg_worst_place worst[VG_WORST_LISTS][VG_WORST];
+  size_t n_worst[VG_WORST_LISTS];
 };
 
 /* Numbers of flat cells (core/judge/flat_cells.h) of one cause. */
@@ -93,6 +148,9 @@ struct vg_mesh_report {
   /* Figures in the metric (if has_metric). */
   int has_metric;
   struct vg_metric_report metric;
+  /* Quality in the terms of solvers (if has_solver): of a whole valid mesh. */
+  int has_solver;
+  struct vg_solver_quality solver;
 };
 
 /** Check m. sizing may be NULL. The target length of an edge is the sizing
@@ -100,7 +158,9 @@ struct vg_mesh_report {
  * (vg_metric_length) takes the place of length / target, edges are those of
  * tetrahedra, and the report has figures in the metric. Extreme angles are
  * computed with libm and only used for reporting. Cost: O(n) memory for one
- * face table, O(n log n) time or better; in a metric, 56 bytes per point more.
+ * face table, O(n log n) time or better; in a metric, 56 bytes per point more;
+ * 9 bytes per tetrahedron and 37 per other cell for the quality in the terms of
+ * solvers.
  * VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with is_valid 0.
  */
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,

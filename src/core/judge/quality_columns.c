@@ -111,7 +111,7 @@ static void match(struct vg_pairing *p, struct vg_strip a, struct vg_strip b)
   while ((more = next_rung(p->m, &a, &r)) &&
          (other = next_rung(p->m, &b, &q)) && is_same(&r, &q)) {
     n->same_side_face += !((r.owner ^ q.owner) & 1);
-    vg_stats_ratio(p->f, p->volume[r.owner >> 1], p->volume[q.owner >> 1]);
+    vg_pairing_join(p, r.owner >> 1, q.owner >> 1);
     n_same++;
     other = 0;
   }
@@ -177,7 +177,7 @@ void vg_pairing_add_column(struct vg_pairing *p, size_t cell, size_t n)
   assert(n > 1 && last < m->n_tet);
   for (size_t i = cell; i < last; i++) {
     p->parent[i + 1] = (uint32_t)cell;
-    vg_stats_ratio(p->f, p->volume[i], p->volume[i + 1]);
+    vg_pairing_join(p, (uint32_t)i, (uint32_t)i + 1);
   }
   p->f->n.n_inner_face += n - 1;
   add_opposite(p, cell, m->tet[cell][3]);

@@ -16,7 +16,7 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
-#include "core/judge/quality_parts.h"
+#include "core/judge/quality_solver.h"
 
 /* Records per pass: a quarter of all, but not fewer than this. */
 #define LEAST_RECORDS ((size_t)1 << 18)
@@ -41,8 +41,9 @@ struct table {
   uint32_t *parent; /* [n_cell] components */
   const float *volume;
   struct vg_stats *f;
-  struct vg_unpaired *unpaired; /* NULL: m is a whole mesh */
-  int refused;                  /* memory for unpaired faces was refused */
+  struct vg_solver_sweep *solver; /* may be NULL */
+  struct vg_unpaired *unpaired;   /* NULL: m is a whole mesh */
+  int refused;                    /* memory for unpaired faces was refused */
 };
 
 static uint32_t lower(uint32_t a, uint32_t b)
@@ -262,7 +263,7 @@ static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
     struct vg_unpaired_face *face = &unpaired->face[unpaired->n_face++];
 
     face_nodes(lowest, r, face->node);
-    face->component = r->owner >> 1;
+    face->component = face->cell = r->owner >> 1;
     face->volume = t->volume[r->owner >> 1];
   }
 }
@@ -280,10 +281,17 @@ static void match(struct table *t, uint32_t lowest, const struct record *r,
     return;
   }
   for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
+  if (t->solver && n == 2 && n_boundary == 1) {
+    uint32_t node[4];
+
+    face_nodes(lowest, r, node);
+    vg_solver_bound(t->solver, lower(a, r[1].owner >> 1), node);
+  }
   if (!vg_stats_face(t->f, n - n_boundary, n_boundary, same_side)) return;
   b = r[1].owner >> 1;
   vg_union(t->parent, a, b);
   vg_stats_ratio(t->f, t->volume[a], t->volume[b]);
+  if (t->solver) vg_solver_join(t->solver, a, b);
 }
 
 static void match_range(struct table *t)
@@ -400,12 +408,15 @@ static vg_status match_all(struct table *t, size_t n_record,
 }
 
 vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
-                         struct vg_stats *f, struct vg_unpaired *unpaired,
-                         size_t *n_component, struct vg_error *err)
+                         struct vg_stats *f, struct vg_solver_sweep *solver,
+                         struct vg_unpaired *unpaired, size_t *n_component,
+                         struct vg_error *err)
 {
   assert(f && n_component);
 
-  struct table t = { .m = m, .volume = volume, .f = f, .unpaired = unpaired };
+  struct table t = {
+    .m = m, .volume = volume, .f = f, .solver = solver, .unpaired = unpaired
+  };
   size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) + 6 * m->n_hex +
                     m->n_tri + m->n_quad;
   vg_status st = VG_BLOCKED;
@@ -420,7 +431,7 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
   if (!t.parent) return vg_fail_memory(err, "the faces of the mesh");
   part_cells(&t);
   if (vg_faces_can_pair(m, unpaired))
-    VG_TRY(vg_pair_faces(m, volume, f, unpaired, t.parent, err));
+    VG_TRY(vg_pair_faces(m, volume, f, solver, unpaired, t.parent, err));
   if (st == VG_BLOCKED) VG_TRY(match_all(&t, n_record, err));
   if (unpaired) VG_TRY(number_unpaired(&t, err));
   *n_component = 0;

@@ -13,6 +13,8 @@
  * relevant cell. */
 #define VOLUME_TOLERANCE 1e-9
 
+#define DEGREE 57.295779513082320877
+
 struct vg_stats *vg_stats_new(void)
 {
   struct vg_stats *f = vg_calloc(1, sizeof *f);
@@ -47,6 +49,33 @@ void vg_stats_worst(struct vg_stats *f, const struct vg_worst_cell *w)
   f->worst[i] = *w;
 }
 
+static int is_worse_place(const struct vg_worst_place *a,
+                          const struct vg_worst_place *b)
+{
+  if (a->value != b->value) return a->value < b->value;
+  if (a->cell != b->cell) return a->cell < b->cell;
+  for (int k = 0; k < 2; k++)
+    if (a->at[k] != b->at[k]) return a->at[k] < b->at[k];
+  return a->at[2] < b->at[2];
+}
+
+void vg_places_add(struct vg_places *list, const struct vg_worst_place *p)
+{
+  assert(list->n <= VG_WORST);
+
+  size_t i = list->n;
+
+  if (i == VG_WORST) {
+    if (!is_worse_place(p, &list->place[VG_WORST - 1])) return;
+    i--;
+  } else list->n++;
+  while (i && is_worse_place(p, &list->place[i - 1])) {
+    list->place[i] = list->place[i - 1];
+    i--;
+  }
+  list->place[i] = *p;
+}
+
 void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
 {
   uint64_t *to = (uint64_t *)&f->n;
@@ -60,6 +89,9 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
   for (int k = 0; k < VG_MOST_N; k++)
     if (more->most[k] > f->most[k]) f->most[k] = more->most[k];
   for (size_t i = 0; i < more->n_worst; i++) vg_stats_worst(f, &more->worst[i]);
+  for (int k = 0; k < VG_WORST_LISTS; k++)
+    for (size_t i = 0; i < more->places[k].n; i++)
+      vg_places_add(&f->places[k], &more->places[k].place[i]);
 }
 
 int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
@@ -186,6 +218,64 @@ static void report_flat(const struct vg_counts *n, struct vg_mesh_report *r)
                                          (size_t)n->flat_needle[c] };
 }
 
+static double degrees(double cosine)
+{
+  return acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine) * DEGREE;
+}
+
+static double fixed_mean(uint64_t sum, uint64_t n)
+{
+  return n ? (double)(int64_t)sum / VG_FIXED / (double)n : 0;
+}
+
+static void report_places(const struct vg_stats *f, struct vg_solver_quality *q)
+{
+  for (int k = 0; k < VG_WORST_LISTS; k++) {
+    const struct vg_places *list = &f->places[k];
+
+    q->n_worst[k] = list->n;
+    memcpy(q->worst[k], list->place, sizeof list->place);
+    for (size_t i = 0; i < list->n; i++) {
+      double *value = &q->worst[k][i].value;
+
+      if (k == VG_WORST_ANGLE) *value = degrees(*value);
+      if (k == VG_WORST_SKEWNESS) *value = -*value;
+    }
+  }
+}
+
+void vg_stats_report_solver(const struct vg_stats *f,
+                            struct vg_solver_quality *q)
+{
+  const struct vg_counts *n = &f->n;
+
+  q->n_face = (size_t)n->n_joined;
+  q->n_boundary_face = (size_t)n->n_border;
+  q->weight_min = 0.5;
+  q->volume_ratio_min = 1;
+  if (n->n_joined) {
+    q->angle_max = degrees(-f->most[VG_MOST_OBLIQUE]);
+    q->angle_mean = degrees(fixed_mean(n->sum_cosine, n->n_joined));
+    q->weight_min = -f->most[VG_MOST_LOPSIDED];
+    q->volume_ratio_min = -f->most[VG_MOST_UNEQUAL];
+  }
+  for (int i = (int)(VG_LIMIT_ANGLE / 5); i < VG_HIST_ANGLE; i++)
+    q->n_angle += (size_t)n->solver_angle[i];
+  for (int i = (int)(VG_LIMIT_SKEWNESS * 4); i < VG_HIST_SKEW; i++)
+    q->n_skewness += (size_t)n->skewness[i];
+  q->n_weight = (size_t)n->n_weight;
+  q->n_volume_ratio = (size_t)n->n_volume_ratio;
+  q->n_determinant = (size_t)n->n_determinant;
+  if (n->n_joined + n->n_border) q->skewness_max = f->most[VG_MOST_SKEWED];
+  q->determinant_min = -f->most[VG_MOST_SINGULAR];
+  q->quality_min = -f->most[VG_MOST_SLANTED];
+  q->quality_mean = fixed_mean(n->sum_quality, n->n_cell);
+  copy(q->hist_angle, n->solver_angle, VG_HIST_ANGLE);
+  copy(q->hist_skewness, n->skewness, VG_HIST_SKEW);
+  copy(q->hist_quality, n->quality, VG_HIST_UNIT);
+  report_places(f, q);
+}
+
 void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
                      struct vg_mesh_report *r)
 {
@@ -197,6 +287,8 @@ void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
   if (has & VG_HAS_FLAT) report_flat(&f->n, r);
   r->has_metric = has & VG_HAS_METRIC ? 1 : 0;
   if (r->has_metric) vg_stats_report_metric(f, &r->metric);
+  r->has_solver = has & VG_HAS_SOLVER && f->n.n_cell;
+  if (r->has_solver) vg_stats_report_solver(f, &r->solver);
   r->n_component = n_component;
 }
 
@@ -211,4 +303,7 @@ void vg_report_conclude(struct vg_mesh_report *r)
                 !r->not_positive && !r->open_face && !r->crowded_face &&
                 !r->same_side_face && !r->orphan_boundary &&
                 !r->outward_boundary && r->volume_error < VOLUME_TOLERANCE;
+  if (r->is_valid || !r->has_solver) return;
+  r->has_solver = 0;
+  memset(&r->solver, 0, sizeof r->solver);
 }

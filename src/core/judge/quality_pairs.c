@@ -25,6 +25,16 @@
 /* Shorter columns are treated as single cells. */
 #define LEAST_COLUMN 4
 
+/* One of a and b is a cell, the other one a boundary face. */
+static void bound(struct vg_pairing *p, uint32_t a, uint32_t b)
+{
+  uint32_t cell = a < b ? a : b;
+  const uint32_t *tri = p->m->tri[(a < b ? b : a) - p->n_cell];
+  const uint32_t node[4] = { tri[0], tri[1], tri[2], VG_NO_NODE };
+
+  vg_solver_bound(p->solver, cell, node);
+}
+
 static void meet(struct vg_pairing *p, uint32_t first, uint32_t second)
 {
   int same_side = (first & 1) == (second & 1);
@@ -32,9 +42,10 @@ static void meet(struct vg_pairing *p, uint32_t first, uint32_t second)
   size_t n_boundary = (size_t)(a >= p->n_cell) + (b >= p->n_cell);
 
   p->is_odd |= n_boundary > 1;
+  if (n_boundary == 1 && p->solver) bound(p, a, b);
   if (!vg_stats_face(p->f, 2 - n_boundary, n_boundary, same_side)) return;
   vg_union(p->parent, a, b);
-  vg_stats_ratio(p->f, p->volume[a], p->volume[b]);
+  vg_pairing_join(p, a, b);
 }
 
 void vg_pairing_add(struct vg_pairing *p, const struct vg_face *f)
@@ -133,6 +144,7 @@ static vg_status list_unpaired(const struct vg_pairing *p,
         { (uint32_t)(b->key[k] >> 32), node[b->owner[k] & 1],
           node[~b->owner[k] & 1], VG_NO_NODE },
         cell,
+        cell,
         p->volume[cell]
       };
     }
@@ -147,15 +159,18 @@ int vg_faces_can_pair(const struct vg_mesh *m,
 }
 
 vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
-                        struct vg_stats *f, struct vg_unpaired *unpaired,
-                        uint32_t *parent, struct vg_error *err)
+                        struct vg_stats *f, struct vg_solver_sweep *solver,
+                        struct vg_unpaired *unpaired, uint32_t *parent,
+                        struct vg_error *err)
 {
   assert(vg_faces_can_pair(m, unpaired));
   assert(parent || !m->n_tet);
 
-  struct vg_pairing p = {
-    .m = m, .volume = volume, .parent = parent, .n_cell = m->n_tet
-  };
+  struct vg_pairing p = { .m = m,
+                          .volume = volume,
+                          .solver = solver,
+                          .parent = parent,
+                          .n_cell = m->n_tet };
   vg_status st = VG_OK;
 
   p.f = vg_stats_new();

@@ -4,7 +4,7 @@
 #ifndef VG_CORE_JUDGE_QUALITY_PAIRS_PARTS_H
 #define VG_CORE_JUDGE_QUALITY_PAIRS_PARTS_H
 
-#include "core/judge/quality_parts.h"
+#include "core/judge/quality_solver.h"
 #include "core/judge/waiting_faces.h"
 
 /* One side of a column of cells: a strip of triangles between two of its three
@@ -19,7 +19,8 @@ struct vg_pairing {
   const struct vg_mesh *m;
   const float *volume;
   struct vg_stats *f;
-  uint32_t *parent; /* [n_cell] components */
+  struct vg_solver_sweep *solver; /* may be NULL */
+  uint32_t *parent;               /* [n_cell] components */
   size_t n_cell;
   /* Owners of faces: 2 * (cell, or n_cell + boundary face) + side. */
   struct vg_waiting face;
@@ -29,6 +30,14 @@ struct vg_pairing {
   size_t n_strip, cap_strip;
   int refused, is_odd; /* Memory was refused; two boundary faces matched. */
 };
+
+/** Compare two cells that share a face. */
+static inline void vg_pairing_join(const struct vg_pairing *p, uint32_t a,
+                                   uint32_t b)
+{
+  vg_stats_ratio(p->f, p->volume[a], p->volume[b]);
+  if (p->solver) vg_solver_join(p->solver, a, b);
+}
 
 /** Match the face, or let it wait. */
 void vg_pairing_add(struct vg_pairing *p, const struct vg_face *f);

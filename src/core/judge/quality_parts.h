@@ -44,11 +44,40 @@ struct vg_counts {
   uint64_t flat_spanning[VG_FLAT_CAUSES], flat_needle[VG_FLAT_CAUSES];
   struct vg_exact volume, sum_radius, sum_mean, sum_edge, sum_length;
   struct vg_exact sum_metric_ratio, complexity;
+  /* Quality in the terms of solvers: numbers of faces between cells and on the
+   * boundary, of those beyond limits, and histograms. */
+  uint64_t n_joined, n_border, n_weight, n_volume_ratio, n_determinant;
+  uint64_t solver_angle[VG_HIST_ANGLE], skewness[VG_HIST_SKEW];
+  uint64_t quality[VG_HIST_UNIT];
+  uint64_t sum_cosine,
+    sum_quality; /* two's complement, units of 1 / VG_FIXED */
 };
 
-/** Extremes in the metric; smallest values are stored as the largest of their
- * negatives, so that all extremes of ranks are combined in the same way. */
-enum { VG_MOST_SHORT, VG_MOST_LONG, VG_MOST_DISTORTED, VG_MOST_N };
+/* Cosines are added up as integers of this unit: 2^33 of them fit. */
+#define VG_FIXED 1073741824.0 /* 2^30 */
+
+/** Extremes in the metric and in the terms of solvers; smallest values are
+ * stored as the largest of their negatives, so that all extremes of ranks are
+ * combined in the same way. */
+enum {
+  VG_MOST_SHORT,
+  VG_MOST_LONG,
+  VG_MOST_DISTORTED,
+  VG_MOST_OBLIQUE, /* cosine of the non-orthogonality */
+  VG_MOST_SKEWED,
+  VG_MOST_LOPSIDED, /* weight */
+  VG_MOST_UNEQUAL,  /* volume ratio */
+  VG_MOST_SINGULAR, /* determinant */
+  VG_MOST_SLANTED,  /* orthogonal quality */
+  VG_MOST_N
+};
+
+/** The worst places of one kind: sorted by value, the lowest first, then by
+ * cell and position. */
+struct vg_places {
+  struct vg_worst_place place[VG_WORST];
+  size_t n;
+};
 
 struct vg_stats {
   struct vg_counts n;
@@ -56,6 +85,8 @@ struct vg_stats {
   double most[VG_MOST_N];
   struct vg_worst_cell worst[VG_WORST]; /* sorted by angle, then by cell */
   size_t n_worst;
+  /* Values: cosine of the angle, negative skewness, orthogonal quality. */
+  struct vg_places places[VG_WORST_LISTS];
 };
 
 /** Figures of an empty mesh; NULL if memory is refused. Release with free(). */
@@ -65,6 +96,15 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more);
 
 /** Add a cell to the list of the worst cells if it is one of them. */
 void vg_stats_worst(struct vg_stats *f, const struct vg_worst_cell *w);
+
+/** Add a place to the list if it is one of the worst. */
+void vg_places_add(struct vg_places *list, const struct vg_worst_place *p);
+
+/** Could a place with this value be one of the worst? */
+static inline int vg_places_admit(const struct vg_places *list, double value)
+{
+  return list->n < VG_WORST || value <= list->place[VG_WORST - 1].value;
+}
 
 /** Count a face with n_cell cells and n_boundary boundary faces. same_side:
  * there are two in total and both have the same winding. Returns whether the
@@ -95,7 +135,8 @@ void vg_stats_length(struct vg_stats *f, double length);
 enum {
   VG_HAS_SIZING = 1, /* edges, compared with the sizing field */
   VG_HAS_METRIC = 2, /* figures in the metric */
-  VG_HAS_FLAT = 4    /* causes of flat cells */
+  VG_HAS_FLAT = 4,   /* causes of flat cells */
+  VG_HAS_SOLVER = 8  /* quality in the terms of solvers */
 };
 
 /** Fill the report, except for `enclosed` and the members that depend on it.
@@ -108,8 +149,12 @@ void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
 void vg_stats_report_metric(const struct vg_stats *f,
                             struct vg_metric_report *r);
 
+/** Fill the figures in the terms of solvers. */
+void vg_stats_report_solver(const struct vg_stats *f,
+                            struct vg_solver_quality *q);
+
 /** Compute the volume error from r->volume and r->enclosed, and whether the
- * mesh is valid. */
+ * mesh is valid. The figures in the terms of solvers are only kept if it is. */
 void vg_report_conclude(struct vg_mesh_report *r);
 
 /** Faces of one kind of cell, with normals out of the cell. The first n_tri of
@@ -154,15 +199,18 @@ struct vg_flat_part {
                              as interface points; 0: those of other parts */
 };
 
+struct vg_solver_sweep; /* core/judge/quality_solver.h */
+
 /** Measure signs and sums of volumes, angles, ratios, and the worst cells.
  *
  * @param first   number of the first tetrahedron, for the list of the worst
  *                cells
  * @param part    NULL: do not classify flat cells
- * @param volume  out: [n_cell], signed */
+ * @param volume  out: [n_cell], signed
+ * @param solver  NULL, or gets the figures that a tetrahedron has by itself */
 void vg_judge_shape(const struct vg_mesh *m, size_t first,
                     const struct vg_flat_part *part, float *volume,
-                    struct vg_stats *f);
+                    struct vg_stats *f, struct vg_solver_sweep *solver);
 
 /** Metrics at the points of a mesh or slice, evaluated when they are first
  * needed. Threads: one. */
@@ -196,6 +244,7 @@ void vg_judge_metric(struct vg_point_metrics *p, struct vg_stats *f);
 struct vg_unpaired_face {
   uint32_t node[4];   /* outward winding; VG_NO_NODE: not a quad */
   uint32_t component; /* component of its cell: 0 .. n_component - 1 */
+  uint32_t cell;      /* its cell */
   float volume;       /* volume of its cell */
 };
 struct vg_unpaired_edge {
@@ -218,12 +267,14 @@ void vg_unpaired_release(struct vg_unpaired *unpaired);
 
 /** Check conformity, components, orientation and volume ratios of neighbours.
  *
+ * @param solver    NULL, or measures the faces that are matched
  * @param unpaired  NULL: m is a mesh with its boundary. Otherwise m is a part
  *                  of a mesh, and the faces to be matched with other parts are
  *                  listed here */
 vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
-                         struct vg_stats *f, struct vg_unpaired *unpaired,
-                         size_t *n_component, struct vg_error *err);
+                         struct vg_stats *f, struct vg_solver_sweep *solver,
+                         struct vg_unpaired *unpaired, size_t *n_component,
+                         struct vg_error *err);
 
 /** Can vg_pair_faces handle a mesh, or a part of one? It must consist of
  * tetrahedra, without a selection of faces (is_shared). */
@@ -238,8 +289,9 @@ int vg_faces_can_pair(const struct vg_mesh *m,
  * was modified. For a part of a mesh, sides without a partner are listed in
  * unpaired. */
 vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
-                        struct vg_stats *f, struct vg_unpaired *unpaired,
-                        uint32_t *parent, struct vg_error *err);
+                        struct vg_stats *f, struct vg_solver_sweep *solver,
+                        struct vg_unpaired *unpaired, uint32_t *parent,
+                        struct vg_error *err);
 
 /** Compare edges with the sizing field, except edges of boundary faces. With
  * unpaired: except edges of unpaired faces, which are listed.

@@ -6,6 +6,7 @@
 
 #include "core/geometry/predicates.h"
 #include "core/geometry/volume.h"
+#include "core/judge/quality_solver.h"
 #include "core/judge/quality_tets.h"
 
 static void count_batch(struct vg_stats *f, const struct vg_tet_batch *b,
@@ -82,7 +83,8 @@ static int is_notable(const struct vg_stats *f, const struct vg_flat_part *part,
 /* Measure n tetrahedra of m from `first` on. cell: number of the first one. */
 static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
                         size_t cell, const struct vg_flat_part *part,
-                        float *volume, struct vg_stats *f)
+                        float *volume, struct vg_stats *f,
+                        struct vg_solver_sweep *solver)
 {
   struct vg_tet_batch b;
   struct vg_tet_bins bins;
@@ -93,6 +95,10 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   for (size_t i = 0; i < n; i++) {
     f->n.not_positive += !(b.volume[i] > 0);
     volume[first + i] = (float)b.volume[i];
+  }
+  for (size_t i = 0; solver && i < n; i++) {
+    solver->quality[first + i] = (float)b.slant2[i];
+    solver->determinant[first + i] = (float)b.determinant[i];
   }
   if (!is_notable(f, part, bins.angle_least)) return;
   for (size_t i = 0; i < n; i++)
@@ -181,15 +187,16 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
 
 void vg_judge_shape(const struct vg_mesh *m, size_t first,
                     const struct vg_flat_part *part, float *volume,
-                    struct vg_stats *f)
+                    struct vg_stats *f, struct vg_solver_sweep *solver)
 {
   assert(volume || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
   for (size_t i = 0, n; i < m->n_tet; i += n) {
     n = m->n_tet - i < VG_TET_BATCH ? m->n_tet - i : VG_TET_BATCH;
-    judge_batch(m, i, n, first + i, part, volume, f);
+    judge_batch(m, i, n, first + i, part, volume, f, solver);
   }
   for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
     judge_mixed(m, kind, volume, f);
+  if (solver) vg_solver_measure_mixed(solver);
 }
 
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,

@@ -113,6 +113,31 @@ VG_WITHIN struct range cosines(double n[4][3], const double length[4])
   return r;
 }
 
+/* For outward area vectors S_i of the faces and the centre c, the direction to
+ * the centre of face i is (c - x_i) / 3, with S_i (c - x_i) = 9 V / 4. The
+ * determinant of sum S_i S_i^T is 4 det(S_1 S_2 S_3)^2, since sum S_i = 0, and
+ * det(S_1 S_2 S_3) = (6 V)^2 / 8. length: 2 |S_i|. */
+VG_WITHIN void measure_for_solvers(struct vg_tet_batch *b, size_t t,
+                                   const double length[4], double six2)
+{
+  double c[3], most = 0, mean, d;
+
+  for (int k = 0; k < 3; k++)
+    c[k] = (b->x[0][k][t] + b->x[1][k][t] + b->x[2][k][t] + b->x[3][k][t]) *
+           0.25;
+  for (int i = 0; i < 4; i++) {
+    double x = c[0] - b->x[i][0][t], y = c[1] - b->x[i][1][t];
+    double z = c[2] - b->x[i][2][t];
+    double product = length[i] * length[i] * (x * x + y * y + z * z);
+
+    most = product > most ? product : most;
+  }
+  b->slant2[t] = 0.5625 * six2 / most;
+  mean = (length[0] + length[1] + length[2] + length[3]) * 0.125;
+  d = six2 / (mean * mean * mean);
+  b->determinant[t] = d * d * (1 / 128.);
+}
+
 /* Tetrahedron t of the batch. A face without area counts as the worst of both
  * kinds of angles, so that it cannot go unnoticed. */
 VG_WITHIN void measure(struct vg_tet_batch *b, size_t t)
@@ -163,6 +188,7 @@ VG_WITHIN void measure(struct vg_tet_batch *b, size_t t)
    * The bound of vg_orient3d is at most 8.9e-16 times six products of three
    * lengths. */
   b->doubt2[t] = 3e-29 * uu * vv * ww;
+  measure_for_solvers(b, t, length, six2);
 }
 
 VG_WITHIN void measure_all(struct vg_tet_batch *b)

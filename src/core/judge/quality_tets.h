@@ -21,7 +21,12 @@ struct vg_tet_batch {
   vg_tet_figure volume;      /* signed; the sign is exact */
   vg_tet_figure radius_ratio, mean_ratio;
   vg_tet_figure edge;   /* root mean square edge */
-  vg_tet_figure doubt2; /* for vg_tets_measure alone */
+  vg_tet_figure slant2; /* square of the smallest cosine of the angles between
+                           the normal of a face and the direction from the
+                           centre of the cell to that of the face */
+  vg_tet_figure determinant; /* as in struct vg_solver_quality, if the cell has
+                                four neighbours */
+  vg_tet_figure doubt2;      /* for vg_tets_measure alone */
 };
 
 /** Bins of the figures of a batch in the histograms of struct vg_counts. */

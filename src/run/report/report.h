@@ -90,6 +90,22 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
 /** Describe why a mesh is invalid: "3 cells not positive, ...". */
 void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size);
 
+/** A limit of the settings on the quality of the mesh that is not met. */
+struct vg_mesh_limit {
+  const char *name, *unit; /* of the setting; static strings */
+  double wanted, got;
+};
+#define VG_MESH_LIMITS 4
+
+/** The limits that a whole mesh does not meet; returns their number. */
+int vg_mesh_limits_missed(const struct vg_settings *s,
+                          const struct vg_mesh_report *r,
+                          struct vg_mesh_limit out[VG_MESH_LIMITS]);
+void vg_report_mesh_limits_text(FILE *to, const struct vg_settings *s,
+                                const struct vg_mesh_report *r);
+json_t *vg_report_mesh_limits_json(const struct vg_settings *s,
+                                   const struct vg_mesh_report *r);
+
 /** Add the fields of a report (base/entries.h) to o in their order; times go to
  * `seconds`, which may be o. */
 void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,

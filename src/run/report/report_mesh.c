@@ -174,6 +174,7 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
           "  volume ratio of neighbouring cells: median %.2f, 95th percentile "
           "%.2f, largest %.1f\n",
           r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
+  if (r->has_solver) vg_report_volumes_text(to, &r->solver);
 }
 
 static void flat_text(FILE *to, const struct vg_mesh_report *r)
@@ -205,6 +206,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   validity_text(to, r);
   quality_text(to, r);
   if (r->has_metric) vg_report_metric_text(to, &r->metric);
+  if (r->has_solver) vg_report_volumes_text(to, &r->solver);
   flat_text(to, r);
   if (!full) return;
   bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,
@@ -216,6 +218,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   else if (r->has_sizing)
     bars(to, "Edge length / target edge length", r->hist_edge, VG_HIST_UNIT,
          0.1, 1);
+  if (r->has_solver) vg_report_volumes_bars(to, &r->solver);
   if (r->n_worst) fprintf(to, "\n  Worst cells\n");
   for (size_t i = 0; i < r->n_worst; i++)
     fprintf(to, "    cell %zu: smallest angle %.2f degrees at (%g, %g, %g)\n",
@@ -366,6 +369,9 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
   json_object_set_new(o, "edges", edges_json(r));
   if (r->has_metric)
     json_object_set_new(o, "metric", vg_report_metric_json(&r->metric));
+  if (r->has_solver)
+    json_object_set_new(o, "solver_quality",
+                        vg_report_volumes_json(&r->solver));
   json_object_set_new(o, "worst", worst_json(r));
   if (r->has_flat) json_object_set_new(o, "flat_cells", flat_json(r, patches));
   return o;

@@ -52,4 +52,10 @@ void vg_report_metric_text(FILE *to, const struct vg_metric_report *r);
 void vg_report_metric_bars(FILE *to, const struct vg_metric_report *r);
 json_t *vg_report_metric_json(const struct vg_metric_report *r);
 
+/** report_volumes.c: quality in the terms of solvers; histograms and worst
+ * places. */
+void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q);
+void vg_report_volumes_bars(FILE *to, const struct vg_solver_quality *q);
+json_t *vg_report_volumes_json(const struct vg_solver_quality *q);
+
 #endif

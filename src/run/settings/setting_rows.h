@@ -373,3 +373,19 @@ VG_ROW(REAL, limit, max_top_ratio, "max_top_ratio", NAN,
   LIMIT(1, HUGE_SIZE, "", "Largest volume ratio of the cells on either side "
   "of the top of the layers, which at most 5 % of the faces of a wall patch "
   "may exceed"))
+VG_ROW(REAL, plain, max_non_orthogonality, "max_non_orthogonality", NAN,
+  .topic = VG_TOPIC_LIMITS,
+  LIMIT(0, 180, "degrees", "Largest angle between the normal of a face of the "
+  "mesh and the line between the centres of its cells"))
+VG_ROW(REAL, plain, max_skewness, "max_skewness", NAN,
+  .topic = VG_TOPIC_LIMITS,
+  LIMIT(0, HUGE_SIZE, "", "Largest skewness of a face of the mesh, as defined "
+  "by OpenFOAM"))
+VG_ROW(REAL, plain, min_face_weight, "min_face_weight", NAN,
+  .topic = VG_TOPIC_LIMITS,
+  LIMIT(0, 0.5, "", "Smallest weight of the linear interpolation on a face of "
+  "the mesh"))
+VG_ROW(REAL, plain, min_orthogonal_quality, "min_orthogonal_quality", NAN,
+  .topic = VG_TOPIC_LIMITS,
+  LIMIT(0, 1, "", "Smallest orthogonal quality of a cell of the mesh, as "
+  "defined by Fluent"))

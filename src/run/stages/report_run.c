@@ -56,6 +56,8 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
+  json_object_set_new(o, "limits_missed",
+                      vg_report_mesh_limits_json(&p->asked, &r->run->judge));
   json_object_set_new(o, "fill",
                       vg_report_fill_json(&r->run->partition.fill,
                                           r->run->n_field_cell));

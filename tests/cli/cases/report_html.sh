@@ -21,7 +21,7 @@ vanguard mesh $run $layers -t 1 --out one
 exits 0
 page=one/box.report.html
 exists $page
-for id in first turn surface cuts layers quality worst settings patches \
+for id in first turn surface cuts layers quality worst solvers settings patches \
   partition run; do
   says $page "<section id=\"$id\""
 done
