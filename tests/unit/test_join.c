@@ -152,7 +152,7 @@ static size_t check_model(const struct model *m)
     const struct vg_join_info *info = k ? &b : &a;
     uint64_t n;
 
-    assert_int_equal(vg_layers_count(&m->layers,
+    assert_int_equal(vg_layers_count(&m->surface, &m->layers,
                                      k ? VG_LAYER_MIXED : VG_LAYER_TETS, 1, &n,
                                      NULL),
                      VG_OK);

@@ -263,16 +263,17 @@ static vg_status open_mesher(const struct vg_run *r,
 /* Number of layer cells; 0 without a limit on cells, which the layers alone may
  * exceed. The same on all ranks. */
 static vg_status count_layers(const struct vg_run *r,
-                              const struct vg_settings *s,
+                              const struct vg_problem *p,
                               const struct vg_layers *layers, uint64_t *n,
                               struct vg_error *err)
 {
+  const struct vg_settings *s = &p->resolved.settings;
   vg_status st;
 
   *n = 0;
   if (!s->max_cells || !layers) return VG_OK;
-  st = vg_layers_count(surface, layers, (enum vg_layer_cells)s->cells, r->threads, n,
-                       err);
+  st = vg_layers_count(&p->boundary.surface, layers,
+                       (enum vg_layer_cells)s->cells, r->threads, n, err);
   if (st >= 0 && *n > (uint64_t)s->max_cells)
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
                  "the layers alone have %llu cells, but only %llu are allowed "
@@ -306,7 +307,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   r->decomposition = vg_ways[s->decompose].name;
   r->cyclic = o.cyclic;
   o.threads = r->threads;
-  VG_TRY(count_layers(r, s, layers, &o.layer_cells, err));
+  VG_TRY(count_layers(r, p, layers, &o.layer_cells, err));
   o.shuffle = r->options.shuffle;
   o.fail_leaves = r->options.fail_leaves;
   o.fail_rounds = r->options.fail_rounds;
