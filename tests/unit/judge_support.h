@@ -45,12 +45,12 @@ static inline struct judge_side judge_side(const uint32_t *cell,
 /* The boundary: the faces that belong to one cell only, turned inwards. */
 static inline void judge_close(struct vg_mesh *m)
 {
-  struct judge_side *s = vg_alloc(5 * (m->n_tet + m->n_pyr + m->n_pri),
-                                  sizeof *s);
+  size_t n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  struct judge_side *s = vg_alloc(6 * n_cell, sizeof *s);
   size_t n = 0;
 
   shape_need(s);
-  for (int kind = 0; kind < VG_CELL_HEX; kind++) {
+  for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
     struct vg_cells c = vg_mesh_cells(m, kind);
     const struct vg_cell_faces *f = &vg_cell_faces[kind];
 
@@ -294,20 +294,23 @@ static inline struct vg_mesh judge_field(const struct cut *c)
 {
   struct vg_mesh m = VG_MESH_INIT;
   uint32_t *number = vg_calloc(c->mesh->n_point, sizeof *number);
-  uint32_t *to[3];
-  size_t *n[3] = { &m.n_tet, &m.n_pyr, &m.n_pri };
+  uint32_t *to[VG_SLICE_KINDS];
+  size_t *n[VG_SLICE_KINDS] = { &m.n_tet, &m.n_pyr, &m.n_pri, &m.n_hex };
 
   shape_need(number);
   m.tet = vg_alloc(c->mesh->n_tet, sizeof *m.tet);
   m.pyr = vg_alloc(c->mesh->n_pyr, sizeof *m.pyr);
   m.pri = vg_alloc(c->mesh->n_pri, sizeof *m.pri);
+  m.hex = vg_alloc(c->mesh->n_hex, sizeof *m.hex);
   to[0] = (uint32_t *)m.tet;
   to[1] = (uint32_t *)m.pyr;
   to[2] = (uint32_t *)m.pri;
+  to[3] = (uint32_t *)m.hex;
   for (size_t g = 0; g < c->n; g++)
-    for (size_t kind = 0; kind < 3 && judge_is_field(g); kind++) {
-      size_t first = g ? c->end[g - 1][kind + 1] : 0, width = kind + 4;
-      const uint32_t *from = cut_cells(c->mesh, (int)kind);
+    for (int kind = 0; kind < VG_SLICE_KINDS && judge_is_field(g); kind++) {
+      size_t first = g ? c->end[g - 1][kind + 1] : 0;
+      size_t width = vg_slice_width[kind];
+      const uint32_t *from = cut_cells(c->mesh, kind);
 
       *n[kind] += c->end[g][kind + 1] - first;
       for (size_t i = width * first; i < width * c->end[g][kind + 1]; i++)

@@ -17,7 +17,8 @@ struct cut {
   const struct vg_mesh *mesh;
   struct vg_mesh boundary; /* borrows from mesh */
   size_t n;                /* slices of the whole cut */
-  size_t (*end)[4];        /* [n] index past the last point, tet, pyr, pri */
+  size_t (*end)[5];        /* [n] index past the last point, tet, pyr, pri,
+                              hex */
   int rank, size;
   size_t bad; /* slice that cannot be read; SIZE_MAX: none */
   struct vg_slices s;
@@ -25,8 +26,10 @@ struct cut {
 
 static inline const uint32_t *cut_cells(const struct vg_mesh *m, int kind)
 {
-  const uint32_t *const cell[3] = { (uint32_t *)m->tet, (uint32_t *)m->pyr,
-                                    (uint32_t *)m->pri };
+  const uint32_t *const cell[VG_SLICE_KINDS] = { (uint32_t *)m->tet,
+                                                 (uint32_t *)m->pyr,
+                                                 (uint32_t *)m->pri,
+                                                 (uint32_t *)m->hex };
 
   return cell[kind];
 }
@@ -41,7 +44,7 @@ static inline int cut_compare(const void *a, const void *b)
 /* One block of memory for all arrays of a slice. */
 struct cut_keep {
   uint32_t *local; /* [points of the mesh] + 1 */
-  uint32_t *id, *own, *cell[3];
+  uint32_t *id, *own, *cell[VG_SLICE_KINDS];
   double (*x)[3];
 };
 
@@ -59,9 +62,9 @@ static inline uint32_t cut_local(const struct cut *c, struct cut_keep *k,
 static inline vg_status cut_get(const struct vg_slices *s, size_t i,
                                 struct vg_slice *out, struct vg_error *err)
 {
-  static const size_t width[3] = { 4, 5, 6 };
+  static const size_t width[VG_SLICE_KINDS] = { 4, 5, 6, 8 };
   const struct cut *c = s->user;
-  size_t g = (size_t)c->rank + i * (size_t)c->size, from[4] = { 0, 0, 0, 0 };
+  size_t g = (size_t)c->rank + i * (size_t)c->size, from[5] = { 0 };
   struct cut_keep *k = vg_calloc(1, sizeof *k);
 
   if (g == c->bad) {
@@ -73,7 +76,7 @@ static inline vg_status cut_get(const struct vg_slices *s, size_t i,
   k->local = vg_calloc(c->mesh->n_point, sizeof *k->local);
   k->id = vg_alloc(c->mesh->n_point, sizeof *k->id);
   k->x = vg_alloc(c->mesh->n_point, sizeof *k->x);
-  for (int kind = 0; kind < 3; kind++) {
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
     size_t n = c->end[g][kind + 1] - from[kind + 1];
     const uint32_t *node = cut_cells(c->mesh, kind) +
                            width[kind] * from[kind + 1];
@@ -105,7 +108,7 @@ static inline void cut_put(const struct vg_slices *s, struct vg_slice *slice)
   struct cut_keep *k = slice->keep;
 
   (void)s;
-  for (int kind = 0; kind < 3; kind++) free(k->cell[kind]);
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++) free(k->cell[kind]);
   free(k->local);
   free(k->id);
   free(k->own);
@@ -119,7 +122,8 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
                             size_t n_boundary, const struct vg_join_info *info,
                             uint64_t seed)
 {
-  const size_t total[4] = { m->n_point, m->n_tet, m->n_pyr, m->n_pri };
+  const size_t total[5] = { m->n_point, m->n_tet, m->n_pyr, m->n_pri,
+                            m->n_hex };
   size_t *at = vg_alloc(n, sizeof *at);
 
   memset(c, 0, sizeof *c);
@@ -128,7 +132,7 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->size = 1;
   c->bad = SIZE_MAX;
   c->end = vg_alloc(n, sizeof *c->end);
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < 5; k++) {
     for (size_t i = 0; i < n; i++) at[i] = model_random(&seed) % (total[k] + 1);
     at[n - 1] = total[k];
     qsort(at, n, sizeof *at, cut_compare);
@@ -138,19 +142,22 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->boundary = *m;
   c->boundary.point = NULL;
   c->boundary.n_point = 0;
-  c->boundary.n_tet = c->boundary.n_pyr = c->boundary.n_pri = 0;
+  c->boundary.n_tet = c->boundary.n_pyr = 0;
+  c->boundary.n_pri = c->boundary.n_hex = 0;
   c->boundary.tet = NULL;
   c->boundary.pyr = NULL;
   c->boundary.pri = NULL;
-  c->s = (struct vg_slices){ .n_point = m->n_point,
-                             .n_cell = { m->n_tet, m->n_pyr, m->n_pri },
-                             .n_boundary_point = info ? info->n_boundary_point
-                                                      : n_boundary,
-                             .boundary = &c->boundary,
-                             .n_slice = n,
-                             .get = cut_get,
-                             .put = cut_put,
-                             .user = c };
+  c->boundary.hex = NULL;
+  c->s = (struct vg_slices){
+    .n_point = m->n_point,
+    .n_cell = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex },
+    .n_boundary_point = info ? info->n_boundary_point : n_boundary,
+    .boundary = &c->boundary,
+    .n_slice = n,
+    .get = cut_get,
+    .put = cut_put,
+    .user = c
+  };
   if (!info) return;
   c->s.n_layer_point = info->n_layer_point;
   c->s.n_layer_cell[VG_SLICE_TET] = info->n_layer_tet;

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "judge_support.h"
+#include "mixed_cut.h"
 
 static void judge_cut(struct cut *c, const struct vg_sizing *sizing,
                       int threads, uint64_t front, struct vg_mesh_report *r,
@@ -75,6 +76,66 @@ static void mixed_cells_in_slices(void **state)
   check_cuts(&m, sizing, &r);
   assert_true(r.is_valid);
   vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+}
+
+/* Slices of kind 0 are layers, the others are the isotropic region. Compared
+ * with a mesh of only the latter's cells, bounded by their faces without a
+ * neighbour. */
+static void check_field(const struct vg_mesh *m, const struct vg_sizing *sizing)
+{
+  struct vg_mesh_report whole, field, want, want_field;
+  struct vg_error err = VG_ERROR_INIT;
+  struct cut c;
+  struct vg_mesh part;
+
+  cut_make(&c, m, 11, 0, NULL, 3);
+  part = judge_field(&c);
+  assert_int_equal(vg_mesh_judge(m, NULL, &want, &err), VG_OK);
+  assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
+  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
+  assert_same_report(&whole, &want);
+  /* cell numbers are those in the whole mesh, and the volume enclosed by the
+   * boundary of the isotropic region is not computed */
+  judge_map_worst(&c, &want_field);
+  assert_true(want_field.volume_error < 1e-12);
+  want_field.enclosed = want_field.volume;
+  want_field.volume_error = 0;
+  assert_same_report(&field, &want_field);
+  assert_true(field.is_valid);
+  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad + 3, &whole, &field);
+  assert_int_equal(field.open_face, 3);
+  assert_false(field.is_valid);
+  cut_release(&c);
+  vg_mesh_release(&part);
+}
+
+/* Slices without tetrahedra, and faces between all kinds of cells. */
+static void hexahedra_in_slices(void **state)
+{
+  struct vg_join_info info;
+  struct vg_mesh_report r;
+  struct vg_mesh m;
+  uint32_t *h, t;
+
+  (void)state;
+  mixed_cut_mesh(&m, &info);
+  assert_true(m.n_hex > 100 && m.n_pyr > 100);
+  check_cuts(&m, NULL, &r);
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_component, 1);
+  check_field(&m, NULL);
+  h = m.hex[m.n_hex / 2]; /* inverted */
+  for (int k = 0; k < 8; k += 4)
+    t = h[k + 1], h[k + 1] = h[k + 3], h[k + 3] = t;
+  check_cuts(&m, NULL, &r);
+  assert_int_equal(r.not_positive, 1);
+  m.n_hex--; /* and a missing one */
+  check_cuts(&m, NULL, &r);
+  assert_int_equal(r.open_face + r.orphan_boundary, 6);
+  m.n_tet = m.n_pyr = m.n_pri = 0;
+  check_cuts(&m, NULL, &r);
+  assert_int_equal(r.n_cell, m.n_hex);
   vg_mesh_release(&m);
 }
 
@@ -147,37 +208,6 @@ static void components_are_those_of_the_whole(void **state)
   check_cuts(&m, NULL, &r);
   assert_int_equal(r.n_component, 2);
   vg_mesh_release(&m);
-}
-
-/* Slices of kind 0 are layers, the others are the isotropic region. Compared
- * with a mesh of only the latter's cells, bounded by their faces without a
- * neighbour. */
-static void check_field(const struct vg_mesh *m, const struct vg_sizing *sizing)
-{
-  struct vg_mesh_report whole, field, want, want_field;
-  struct vg_error err = VG_ERROR_INIT;
-  struct cut c;
-  struct vg_mesh part;
-
-  cut_make(&c, m, 11, 0, NULL, 3);
-  part = judge_field(&c);
-  assert_int_equal(vg_mesh_judge(m, NULL, &want, &err), VG_OK);
-  assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
-  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
-  assert_same_report(&whole, &want);
-  /* cell numbers are those in the whole mesh, and the volume enclosed by the
-   * boundary of the isotropic region is not computed */
-  judge_map_worst(&c, &want_field);
-  assert_true(want_field.volume_error < 1e-12);
-  want_field.enclosed = want_field.volume;
-  want_field.volume_error = 0;
-  assert_same_report(&field, &want_field);
-  assert_true(field.is_valid);
-  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad + 3, &whole, &field);
-  assert_int_equal(field.open_face, 3);
-  assert_false(field.is_valid);
-  cut_release(&c);
-  vg_mesh_release(&part);
 }
 
 static void the_isotropic_region_is_checked_separately(void **state)
@@ -447,6 +477,7 @@ int main(void)
     cmocka_unit_test(tetrahedra_in_slices),
     cmocka_unit_test(mixed_cells_in_slices),
     cmocka_unit_test(prisms_in_slices),
+    cmocka_unit_test(hexahedra_in_slices),
     cmocka_unit_test(cells_several_times_over),
     cmocka_unit_test(slices_count_every_defect_equally),
     cmocka_unit_test(components_are_those_of_the_whole),

@@ -132,7 +132,7 @@ static struct vg_slices serve(struct server *v)
 
 /* --- slices against the whole mesh --------------------------------------- */
 
-static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
+static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6, 8 };
 
 struct check {
   const struct vg_mesh *m;
@@ -145,14 +145,16 @@ static size_t count_of(const struct vg_mesh *m, int kind)
 {
   return kind == VG_SLICE_TET ? m->n_tet
        : kind == VG_SLICE_PYR ? m->n_pyr
-                              : m->n_pri;
+       : kind == VG_SLICE_PRI ? m->n_pri
+                              : m->n_hex;
 }
 
 static const uint32_t *cells_of(const struct vg_mesh *m, int kind)
 {
   return kind == VG_SLICE_TET ? (const uint32_t *)m->tet
        : kind == VG_SLICE_PYR ? (const uint32_t *)m->pyr
-                              : (const uint32_t *)m->pri;
+       : kind == VG_SLICE_PRI ? (const uint32_t *)m->pri
+                              : (const uint32_t *)m->hex;
 }
 
 static void check_start(struct check *c, const struct vg_mesh *m)
@@ -299,7 +301,8 @@ static int by_value(const void *a, const void *b)
   return (*s > *t) - (*s < *t);
 }
 
-static size_t list_sides(const struct vg_mesh *m, const size_t n_layer[3],
+static size_t list_sides(const struct vg_mesh *m,
+                         const size_t n_layer[VG_SLICE_KINDS],
                          struct side *side)
 {
   size_t n = 0;

@@ -2,8 +2,7 @@
 /* Meshes in slices: the files equal those of the writers of whole meshes, byte
  * for byte. */
 #define _GNU_SOURCE
-#include "io_support.h"
-#include "slices_support.h"
+#include "mixed_cut.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -20,23 +19,24 @@
 
 #define N_SLICE 23
 
-/* Meshes of the tests: tetrahedra, mixed. */
-static struct vg_mesh mesh[2];
-static struct vg_join_info info[2];
+/* Meshes of the tests: tetrahedra, mixed, with hexahedra. */
+enum { N_MESH = 3 };
+static struct vg_mesh mesh[N_MESH];
+static struct vg_join_info info[N_MESH];
 
 static int make_meshes(void **state)
 {
   (void)state;
   cut_mesh(&mesh[0], &info[0], VG_LAYER_TETS);
   cut_mesh(&mesh[1], &info[1], VG_LAYER_MIXED);
+  mixed_cut_mesh(&mesh[2], &info[2]);
   return 0;
 }
 
 static int release_meshes(void **state)
 {
   (void)state;
-  vg_mesh_release(&mesh[0]);
-  vg_mesh_release(&mesh[1]);
+  for (int k = 0; k < N_MESH; k++) vg_mesh_release(&mesh[k]);
   return 0;
 }
 
@@ -109,7 +109,7 @@ static void write_slices(struct cut *c, const char *form,
 static void collect_is_the_mesh(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < N_MESH; k++)
     for (int threads = 1; threads < 4; threads++) {
       struct vg_mesh back = VG_MESH_INIT;
       struct vg_error err = VG_ERROR_INIT;
@@ -137,10 +137,10 @@ static void every_kind_of_ugrid(void **state)
   };
 
   (void)state;
-  for (size_t i = 0; i < 2 * sizeof form / sizeof *form; i++) {
-    struct vg_slices_options o = { .threads = (int)(i % 3) + 1 };
-    const char *f = form[i / 2], *whole = ugrid_file(f);
-    int k = i % 2;
+  for (size_t i = 0; i < N_MESH * sizeof form / sizeof *form; i++) {
+    struct vg_slices_options o = { .threads = (int)(i / N_MESH % 3) + 1 };
+    const char *f = form[i / N_MESH], *whole = ugrid_file(f);
+    int k = i % N_MESH;
     struct cut c;
 
     cut_make(&c, &mesh[k], N_SLICE, 0, &info[k], i);
@@ -173,22 +173,23 @@ static void others_are_those_of_the_whole_mesh(void **state)
   const char *whole = whole_file();
 
   (void)state;
-  for (size_t i = 0; i < 2 * sizeof other / sizeof *other; i++) {
+  for (size_t i = 0; i < N_MESH * sizeof other / sizeof *other; i++) {
     const struct vg_slices_options o = { .threads = 1 + i % 2 };
-    const char *form = other[i / 2].form;
+    const size_t at = i / N_MESH, k = i % N_MESH;
+    const char *form = other[at].form;
     size_t n_quad;
     struct cut c;
 
-    if (other[i / 2].write == vg_cgns_write && !vg_cgns_is_built()) continue;
-    n_quad = cut_close(&mesh[i % 2], form);
-    assert_int_equal(other[i / 2].write(whole, &mesh[i % 2], NULL), VG_OK);
-    cut_make(&c, &mesh[i % 2], N_SLICE, 0, &info[i % 2], 5);
+    if (other[at].write == vg_cgns_write && !vg_cgns_is_built()) continue;
+    n_quad = k == 1 ? cut_close(&mesh[k], form) : mesh[k].n_quad;
+    assert_int_equal(other[at].write(whole, &mesh[k], NULL), VG_OK);
+    cut_make(&c, &mesh[k], N_SLICE, 0, &info[k], 5);
     write_slices(&c, form, &o);
     same_file(whole, cut_file(form));
     unlink(whole);
     unlink(cut_file(form));
     cut_release(&c);
-    mesh[i % 2].n_quad = n_quad;
+    mesh[k].n_quad = n_quad;
   }
 }
 
@@ -307,9 +308,10 @@ static void records_in_parts(void **state)
   static const char *const form[] = { "r8.ugrid", "lr4.ugrid" };
 
   (void)state;
-  for (size_t i = 0; i < 2 * sizeof limit / sizeof *limit; i++) {
-    const struct vg_slices_options o = { 2, 1, limit[i / 2], 0, 0 };
+  for (size_t i = 0; i < N_MESH * sizeof limit / sizeof *limit; i++) {
+    const struct vg_slices_options o = { 2, 1, limit[i / N_MESH], 0, 0 };
     const char *f = form[i % 2], *path = ugrid_file(f);
+    const size_t k = i % N_MESH;
     struct vg_output out = VG_OUTPUT_INIT;
     struct vg_ugrid_kind kind;
     struct cut c;
@@ -317,9 +319,9 @@ static void records_in_parts(void **state)
     assert_true(vg_ugrid_kind(path, &kind));
     out.record_limit = o.record_limit;
     assert_int_equal(vg_output_open(path, &out, NULL), VG_OK);
-    vg_ugrid_put(&out, &kind, &mesh[i % 2], &info[i % 2].n_layer_tet);
+    vg_ugrid_put(&out, &kind, &mesh[k], &info[k].n_layer_tet);
     assert_int_equal(vg_output_commit(&out, NULL), VG_OK);
-    cut_make(&c, &mesh[i % 2], N_SLICE, 0, &info[i % 2], i);
+    cut_make(&c, &mesh[k], N_SLICE, 0, &info[k], i);
     write_slices(&c, f, &o);
     same_file(path, cut_file(f));
     unlink(path);
@@ -425,7 +427,7 @@ static void cogsg_and_what_belongs_to_it(void **state)
 static void one_vtu(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < N_MESH; k++) {
     const struct vg_slices_options o = { .threads = 2 };
     const char *whole = whole_file();
     float *angle = vg_alloc(mesh[k].n_tet, sizeof *angle);
@@ -499,15 +501,16 @@ static void *array_of(const unsigned char *data, size_t size, int n,
 }
 
 /* VTK's slots of our nodes. */
-static const int to_vtk[3][6] = { { 0, 1, 2, 3 },
+static const int to_vtk[4][8] = { { 0, 1, 2, 3 },
                                   { 1, 0, 3, 4, 2 },
-                                  { 1, 0, 2, 4, 3, 5 } };
+                                  { 1, 0, 2, 4, 3, 5 },
+                                  { 0, 1, 2, 3, 4, 5, 6, 7 } };
 
 /* The cells of slices g and on, as far as they are in this piece, must have the
  * coordinates of those of the mesh. Returns the next slice. */
 static size_t check_piece(const struct cut *c, const char *path, size_t g)
 {
-  static const int width[3] = { 4, 5, 6 }, type[3] = { 10, 14, 13 };
+  static const int width[4] = { 4, 5, 6, 8 }, type[4] = { 10, 14, 13, 12 };
   size_t size, n = 0;
   uint64_t b;
   unsigned char *data = io_slurp(path, &size);
@@ -520,7 +523,7 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
   size_t n_cell = b / 4;
 
   for (; g < c->n && n < n_cell; g++)
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
       for (size_t i = g ? c->end[g - 1][k + 1] : 0; i < c->end[g][k + 1];
            i++, n++) {
         const uint32_t *cell = cut_cells(c->mesh, k) + i * (size_t)width[k];
@@ -549,7 +552,7 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
 static void pieces_are_the_mesh(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < N_MESH; k++) {
     const struct vg_slices_options o = { .threads = 2, .piece_cells = 400 };
     char *path, *text;
     size_t g = 0, n = 0, size;
@@ -570,9 +573,9 @@ static void pieces_are_the_mesh(void **state)
     }
     assert_true(n > 2);
     while (g < c.n) /* empty ones at the end */
-      for (int i = 1; i < 4 && g < c.n; i++) {
+      for (int i = 1; i < 5 && g < c.n; i++) {
         assert_int_equal(c.end[g][i], c.end[c.n - 1][i]);
-        if (i == 3) g++;
+        if (i == 4) g++;
       }
     free(text);
     unlink(cut_file("pvtu"));

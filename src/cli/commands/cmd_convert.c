@@ -359,6 +359,7 @@ static vg_status open_slices(struct conversion *c, struct vg_error *err)
   c->mesh.n_tet = (size_t)s->n_cell[VG_SLICE_TET];
   c->mesh.n_pyr = (size_t)s->n_cell[VG_SLICE_PYR];
   c->mesh.n_pri = (size_t)s->n_cell[VG_SLICE_PRI];
+  c->mesh.n_hex = (size_t)s->n_cell[VG_SLICE_HEX];
   c->n_layer = (size_t)s->n_layer_cell[VG_SLICE_TET];
   return VG_OK;
 }

@@ -47,11 +47,12 @@ static void kind_keys(struct page *p)
 {
   static const char *const name[VG_CUT_KINDS] = {
     "tetrahedra outside the layers", "tetrahedra in layers", "pyramids",
-    "prisms"
+    "prisms", "hexahedra"
   };
   const uint64_t *layer = p->h->run->slices.n_layer_cell;
   const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
-                                     layer[VG_SLICE_PYR], layer[VG_SLICE_PRI] };
+                                     layer[VG_SLICE_PYR], layer[VG_SLICE_PRI],
+                                     layer[VG_SLICE_HEX] };
 
   vg_page_markup(p, "<p class=\"keys\">");
   for (int k = 0; k < VG_CUT_KINDS; k++)

@@ -305,6 +305,7 @@ void vg_html_tiles(struct page *p)
   if (m->n_cell[VG_SLICE_TET] < vg_run_cells(p->h->run))
     tile(p, m->n_cell[VG_SLICE_TET], "tetrahedra");
   tile(p, m->n_cell[VG_SLICE_PRI], "prisms");
+  tile(p, m->n_cell[VG_SLICE_HEX], "hexahedra");
   tile(p, m->n_cell[VG_SLICE_PYR], "pyramids");
   if (p->has_layers) {
     tile_begin(p);

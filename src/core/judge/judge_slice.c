@@ -7,6 +7,10 @@
 #include "base/memory.h"
 #include "core/judge/judge_slices_parts.h"
 
+_Static_assert((int)VG_SLICE_HEX == VG_CELL_HEX &&
+                 (int)VG_SLICE_KINDS == VG_CELL_KINDS,
+               "kinds by the same number");
+
 struct work {
   struct vg_slices_judgement *j;
   struct vg_judge_worker *w;
@@ -75,10 +79,12 @@ static void make_view(struct work *k)
   m->n_tet = s->n_cell[VG_SLICE_TET];
   m->n_pyr = s->n_cell[VG_SLICE_PYR];
   m->n_pri = s->n_cell[VG_SLICE_PRI];
+  m->n_hex = s->n_cell[VG_SLICE_HEX];
   memcpy(&m->point, &s->x, sizeof m->point);
   memcpy(&m->tet, &s->cell[VG_SLICE_TET], sizeof m->tet);
   memcpy(&m->pyr, &s->cell[VG_SLICE_PYR], sizeof m->pyr);
   memcpy(&m->pri, &s->cell[VG_SLICE_PRI], sizeof m->pri);
+  memcpy(&m->hex, &s->cell[VG_SLICE_HEX], sizeof m->hex);
 }
 
 /* Count indices out of range and points that are not finite. Returns 1 if
@@ -208,17 +214,17 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
   const struct vg_flat_part part = { j->flat, s->id, s->point_at, s->n_own,
                                      s->kind > 1 };
   int classify = j->flat && (k->is_field || j->edges_of == VG_JUDGED_WHOLE);
-  const uint64_t *n = j->s->n_cell;
-  const uint64_t first[VG_CELL_KINDS] = {
-    s->cell_at[VG_SLICE_TET], n[VG_SLICE_TET] + s->cell_at[VG_SLICE_PYR],
-    n[VG_SLICE_TET] + n[VG_SLICE_PYR] + s->cell_at[VG_SLICE_PRI], 0
-  };
+  uint64_t first[VG_CELL_KINDS], end = 0;
   float *volume = vg_alloc(k->n_cell, sizeof *volume);
   struct vg_solver_sweep *solver = &k->w->solver;
   size_t n_component = 0;
   vg_status st = VG_OK;
 
   if (!volume) return vg_fail_memory(err, "the volumes of the cells");
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
+    first[kind] = end + s->cell_at[kind];
+    end += j->s->n_cell[kind];
+  }
   VG_TRY(vg_solver_begin(solver, &k->view, first, volume, k->f, err));
   vg_judge_shape(&k->view, s->cell_at[VG_SLICE_TET], classify ? &part : NULL,
                  volume, k->f, solver);
@@ -246,7 +252,7 @@ static void note_size(const struct work *k)
              vg_solver_bytes(&k->view);
 
   for (size_t kind = 0; kind < VG_SLICE_KINDS; kind++)
-    n += s->n_cell[kind] * (4 + kind) * sizeof(uint32_t);
+    n += s->n_cell[kind] * vg_slice_width[kind] * sizeof(uint32_t);
   if (n > k->w->slice_bytes) k->w->slice_bytes = n;
 }
 

@@ -190,12 +190,21 @@ static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
   return vg_fail(
     err, VG_ERR_INPUT,
     "the slices own %llu points, %llu "
-    "tetrahedra, %llu pyramids and %llu prisms, but the mesh has "
-    "%llu, %llu, %llu and %llu",
+    "tetrahedra, %llu pyramids, %llu prisms and %llu hexahedra, but the mesh "
+    "has %llu, %llu, %llu, %llu and %llu",
     (unsigned long long)c->n_point, (unsigned long long)c->n_cell[0],
     (unsigned long long)c->n_cell[1], (unsigned long long)c->n_cell[2],
-    (unsigned long long)s->n_point, (unsigned long long)s->n_cell[0],
-    (unsigned long long)s->n_cell[1], (unsigned long long)s->n_cell[2]);
+    (unsigned long long)c->n_cell[3], (unsigned long long)s->n_point,
+    (unsigned long long)s->n_cell[0], (unsigned long long)s->n_cell[1],
+    (unsigned long long)s->n_cell[2], (unsigned long long)s->n_cell[3]);
+}
+
+static uint64_t n_cells(const struct census *c)
+{
+  uint64_t n = 0;
+
+  for (int k = 0; k < VG_SLICE_KINDS; k++) n += c->n_cell[k];
+  return n;
 }
 
 /* Find the numbers of the components of this rank in the mesh. */
@@ -450,7 +459,7 @@ static vg_status judge(struct vg_slices_judgement *j, uint64_t front_faces,
   VG_TRY(vg_comm_agree(j->comm, st, err));
   vg_judge_note_bytes(j, 0);
   VG_TRY(take_census(j, &c, err));
-  if (c.bad_index || c.not_finite || !(c.n_cell[0] + c.n_cell[1] + c.n_cell[2]))
+  if (c.bad_index || c.not_finite || !n_cells(&c))
     return report_unsound(j, r, err);
   VG_TRY(number_slices(j, err));
   st = make_parents(j, err);

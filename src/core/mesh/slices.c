@@ -88,6 +88,7 @@ static vg_status collect_slice(void *context, const struct vg_slice *slice,
   collect_cells(slice, VG_SLICE_TET, 4, (uint32_t *)m->tet);
   collect_cells(slice, VG_SLICE_PYR, 5, (uint32_t *)m->pyr);
   collect_cells(slice, VG_SLICE_PRI, 6, (uint32_t *)m->pri);
+  collect_cells(slice, VG_SLICE_HEX, 8, (uint32_t *)m->hex);
   return VG_OK;
 }
 
@@ -108,11 +109,13 @@ vg_status vg_slices_collect(const struct vg_slices *s, int threads,
   m.n_tet = (size_t)s->n_cell[VG_SLICE_TET];
   m.n_pyr = (size_t)s->n_cell[VG_SLICE_PYR];
   m.n_pri = (size_t)s->n_cell[VG_SLICE_PRI];
+  m.n_hex = (size_t)s->n_cell[VG_SLICE_HEX];
   m.point = vg_alloc(m.n_point, sizeof *m.point);
   m.tet = vg_alloc(m.n_tet, sizeof *m.tet);
   m.pyr = vg_alloc(m.n_pyr, sizeof *m.pyr);
   m.pri = vg_alloc(m.n_pri, sizeof *m.pri);
-  if (!m.point || !m.tet || !m.pyr || !m.pri)
+  m.hex = vg_alloc(m.n_hex, sizeof *m.hex);
+  if (!m.point || !m.tet || !m.pyr || !m.pri || !m.hex)
     st = vg_fail_memory(err, "the mesh as a whole");
   else st = vg_slices_each(s, threads, collect_slice, &m, err);
   if (st >= 0) vg_mesh_move(out, &m);

@@ -16,7 +16,10 @@
 
 #include "core/mesh/mesh.h"
 
-enum { VG_SLICE_TET, VG_SLICE_PYR, VG_SLICE_PRI, VG_SLICE_KINDS };
+enum { VG_SLICE_TET, VG_SLICE_PYR, VG_SLICE_PRI, VG_SLICE_HEX, VG_SLICE_KINDS };
+
+/* Number of nodes of a cell of each kind. */
+static const unsigned char vg_slice_width[VG_SLICE_KINDS] = { 4, 5, 6, 8 };
 
 struct vg_slice {
   size_t n_point;       /* local points */
@@ -30,8 +33,9 @@ struct vg_slice {
   uint64_t cell_at[VG_SLICE_KINDS]; /* index of the first cell among the
                                        mesh's cells of the kind */
   size_t n_cell[VG_SLICE_KINDS];
-  const uint32_t *cell[VG_SLICE_KINDS]; /* [n_cell][4, 5, 6] local points, in
-                                           the node order of core/mesh/mesh.h */
+  const uint32_t *cell[VG_SLICE_KINDS]; /* [n_cell][4, 5, 6, 8] local points,
+                                           in the node order of
+                                           core/mesh/mesh.h */
   const uint32_t *part[VG_SLICE_KINDS]; /* [n_cell] solver partition, <
                                            n_part; NULL if the slices have no
                                            n_part */

@@ -110,6 +110,7 @@ struct vg_mesh vg_slices_frame(const struct vg_slices *s)
   m.n_tet = (size_t)s->n_cell[VG_SLICE_TET];
   m.n_pyr = (size_t)s->n_cell[VG_SLICE_PYR];
   m.n_pri = (size_t)s->n_cell[VG_SLICE_PRI];
+  m.n_hex = (size_t)s->n_cell[VG_SLICE_HEX];
   return m;
 }
 

@@ -83,9 +83,11 @@ static vg_status link_slice(const struct vg_slice *s, struct vg_mesh *m,
   m->n_tet = s->n_cell[VG_SLICE_TET];
   m->n_pyr = s->n_cell[VG_SLICE_PYR];
   m->n_pri = s->n_cell[VG_SLICE_PRI];
+  m->n_hex = s->n_cell[VG_SLICE_HEX];
   m->tet = (uint32_t(*)[4])(uintptr_t)s->cell[VG_SLICE_TET];
   m->pyr = (uint32_t(*)[5])(uintptr_t)s->cell[VG_SLICE_PYR];
   m->pri = (uint32_t(*)[6])(uintptr_t)s->cell[VG_SLICE_PRI];
+  m->hex = (uint32_t(*)[8])(uintptr_t)s->cell[VG_SLICE_HEX];
   return vg_cell_links_build(l, m, 1, "a slice of the mesh", err);
 }
 
@@ -93,19 +95,19 @@ static int kind_of(const struct vg_cell_links *l, uint32_t cell)
 {
   return cell < l->end_tet ? VG_SLICE_TET
        : cell < l->end_pyr ? VG_SLICE_PYR
-                           : VG_SLICE_PRI;
+       : cell < l->end_pri ? VG_SLICE_PRI
+                           : VG_SLICE_HEX;
 }
 
 /* Number in the mesh of a cell of the slice. */
 static uint32_t number_of(const struct writing *w, const struct vg_slice *s,
                           const struct vg_cell_links *l, uint32_t cell)
 {
+  const uint32_t first[VG_SLICE_KINDS] = { 0, l->end_tet, l->end_pyr,
+                                           l->end_pri };
   int kind = kind_of(l, cell);
-  uint32_t before = kind == VG_SLICE_TET ? 0
-                  : kind == VG_SLICE_PYR ? l->end_tet
-                                         : l->end_pyr;
 
-  return (uint32_t)(w->first[kind] + s->cell_at[kind] + (cell - before));
+  return (uint32_t)(w->first[kind] + s->cell_at[kind] + (cell - first[kind]));
 }
 
 static void set_key(uint32_t key[4], int n, const uint32_t *node)

@@ -11,8 +11,6 @@
  * messages, small in comparison with the mesh. */
 #define ROUND_BYTES (256u << 20)
 
-static const int width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 struct gathering {
   struct vg_comm *comm;
   const struct vg_slices *s;
@@ -36,7 +34,7 @@ static void pack(const struct vg_slice *slice, int has_parts,
 
     vg_put(to, 1, sizeof slice->cell_at[kind], &slice->cell_at[kind]);
     vg_put(to, 1, sizeof n, &n);
-    for (size_t i = 0; i < n * (size_t)width[kind]; i++)
+    for (size_t i = 0; i < n * vg_slice_width[kind]; i++)
       vg_put(to, 1, sizeof *slice->id, &slice->id[slice->cell[kind][i]]);
     if (has_parts) vg_put(to, n, sizeof *slice->part[kind], slice->part[kind]);
   }
@@ -76,7 +74,7 @@ static vg_status unpack(struct gathering *g, const struct vg_bytes *from,
 {
   struct vg_reader r = { from->data, from->n, 0, 0 };
   struct vg_mesh *m = g->mesh;
-  void *const cell[VG_SLICE_KINDS] = { m->tet, m->pyr, m->pri };
+  void *const cell[VG_SLICE_KINDS] = { m->tet, m->pyr, m->pri, m->hex };
 
   while (!r.bad && r.at < r.n) {
     uint64_t at = 0, n = 0, first = 0;
@@ -89,7 +87,7 @@ static vg_status unpack(struct gathering *g, const struct vg_bytes *from,
 
       vg_get(&r, 1, sizeof at, &at);
       vg_get(&r, 1, sizeof n, &n);
-      place(&r, at, n, total, (size_t)width[kind] * sizeof(uint32_t),
+      place(&r, at, n, total, vg_slice_width[kind] * sizeof(uint32_t),
             cell[kind]);
       if (g->s->n_part)
         place(&r, at, n, total, sizeof *g->part, g->part + first);
@@ -135,7 +133,7 @@ static vg_status collect_own(struct gathering *g, int threads,
   VG_TRY(vg_slices_collect(g->s, threads, g->mesh, err));
   if (!g->s->n_part) return VG_OK;
   g->part = vg_alloc((size_t)(n[VG_SLICE_TET] + n[VG_SLICE_PYR] +
-                              n[VG_SLICE_PRI]),
+                              n[VG_SLICE_PRI] + n[VG_SLICE_HEX]),
                      sizeof *g->part);
   st = g->part ? vg_slices_collect_parts(g->s, threads, g->part, err)
                : vg_fail_memory(err, "the solver partitions of the mesh");

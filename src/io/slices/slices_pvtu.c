@@ -17,8 +17,6 @@
 #define PIECE_CELLS 2000000u
 #define BLOCK 4096
 
-static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 /* The last field is only used if the mesh has solver partitions. */
 static const struct vg_vtu_field field[3] = {
   { "subdomain", VG_VTU_CELL, VG_VTU_INT32, 1, NULL },
@@ -133,12 +131,13 @@ static vg_status list_all(struct vg_comm *comm, const struct vg_slices *s,
 static void add_to_piece(struct vg_mesh *m, struct entry *e)
 {
   e->point_at = m->n_point;
-  e->cell_at = m->n_tet + m->n_pyr + m->n_pri;
-  e->node_at = 4 * m->n_tet + 5 * m->n_pyr + 6 * m->n_pri;
+  e->cell_at = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  e->node_at = 4 * m->n_tet + 5 * m->n_pyr + 6 * m->n_pri + 8 * m->n_hex;
   m->n_point += e->n_point;
   m->n_tet += e->n_cell[VG_SLICE_TET];
   m->n_pyr += e->n_cell[VG_SLICE_PYR];
   m->n_pri += e->n_cell[VG_SLICE_PRI];
+  m->n_hex += e->n_cell[VG_SLICE_HEX];
 }
 
 static void put_frame(const void *of, struct vg_output *out)
@@ -222,7 +221,7 @@ static void put_slice(const struct piece *piece, const struct entry *e,
       vg_output_bytes(out, slice->part[k], 4 * c.n);
     }
     first += c.n;
-    first_node += c.n * (uint64_t)cell_width[k];
+    first_node += c.n * vg_slice_width[k];
   }
   put_number(out, piece->at.field[0] + 4 * e->cell_at,
              (size_t)(first - e->cell_at), (int32_t)slice->domain);

@@ -2,8 +2,6 @@
 /* Writes a mesh in slices as one .su2 with the bytes of vg_su2_write. */
 #include "io/slices/slices_parts.h"
 
-static const int width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 static void put_frame(const void *of, struct vg_output *out)
 {
   vg_su2_put(out, of);
@@ -18,7 +16,7 @@ static void put_slice(void *of, const struct vg_slice *slice,
     if (slice->n_cell[k]) vg_su2_seek_cell(out, s, k, slice->cell_at[k]);
     for (size_t i = 0; i < slice->n_cell[k]; i++)
       vg_su2_put_cell(out, s, k, slice->cell_at[k] + i,
-                      slice->cell[k] + i * (size_t)width[k], slice->id);
+                      slice->cell[k] + i * vg_slice_width[k], slice->id);
   }
   if (slice->n_own) vg_su2_seek_point(out, s, slice->point_at);
   for (size_t i = 0; i < slice->n_own; i++)

@@ -8,7 +8,7 @@
 #include "io/slices/slices_parts.h"
 #include "io/stream/shared_file.h"
 
-#define BLOCK 3840 /* a multiple of 3, 4, 5 and 6 */
+#define BLOCK 3840 /* a multiple of 3, 4, 5, 6 and 8 */
 
 struct vg_slices_ugrid {
   struct vg_ugrid_kind kind;
@@ -49,11 +49,11 @@ static void put_points(const struct vg_slices_ugrid *u,
 }
 
 static void put_cells(const struct vg_slices_ugrid *u,
-                      const struct vg_slice *slice, int kind, size_t width,
+                      const struct vg_slice *slice, int kind,
                       struct vg_output *out)
 {
   const uint32_t *node = slice->cell[kind];
-  size_t n = width * slice->n_cell[kind];
+  size_t n = vg_slice_width[kind] * slice->n_cell[kind];
   uint32_t block[BLOCK];
 
   vg_ugrid_seek(out, &u->kind, u->count, 3 + kind, slice->cell_at[kind]);
@@ -70,9 +70,7 @@ static void put_slice(void *of, const struct vg_slice *slice,
   const struct vg_slices_ugrid *u = of;
 
   put_points(u, slice, out);
-  put_cells(u, slice, VG_SLICE_TET, 4, out);
-  put_cells(u, slice, VG_SLICE_PYR, 5, out);
-  put_cells(u, slice, VG_SLICE_PRI, 6, out);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) put_cells(u, slice, k, out);
 }
 
 /* --- rounding ------------------------------------------------------------ */

@@ -6,8 +6,6 @@
 /* Values per write call; two blocks of 128 kB are on the stack. */
 #define BLOCK 32768
 
-static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 struct whole {
   struct vg_mesh mesh; /* frame of the file */
   struct vg_vtu_field field[VG_VTU_FIELDS_MAX];
@@ -61,7 +59,7 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
 {
   const struct whole *w = of;
   const uint64_t n[VG_SLICE_KINDS] = { w->mesh.n_tet, w->mesh.n_pyr,
-                                       w->mesh.n_pri };
+                                       w->mesh.n_pri, w->mesh.n_hex };
   uint64_t first = 0, first_node = 0;
 
   vg_output_seek(out, w->at.points + 24 * slice->point_at);
@@ -74,13 +72,13 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
                                     slice->id,
                                     0,
                                     first + slice->cell_at[k],
-                                    first_node + slice->cell_at[k] *
-                                                   (uint64_t)cell_width[k] };
+                                    first_node +
+                                      slice->cell_at[k] * vg_slice_width[k] };
 
     if (c.n) vg_vtu_put_cells(out, &w->at, &c);
     if (c.n && w->n_field > w->n_quality) put_parts(w, slice, k, first, out);
     first += n[k];
-    first_node += n[k] * (uint64_t)cell_width[k];
+    first_node += n[k] * vg_slice_width[k];
   }
   if (w->n_quality) put_quality(w, slice, out);
 }
@@ -101,7 +99,8 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
   uint64_t size = 0;
   vg_status st;
 
-  if (!o->plain && !(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI]))
+  if (!o->plain && !(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI] +
+                     s->n_cell[VG_SLICE_HEX]))
     w.n_quality = 2;
   w.n_field = w.n_quality;
   if (s->n_part) w.field[w.n_field++] = parts;

@@ -230,7 +230,9 @@ static struct vg_mesh view_of(const struct part *p)
                            .n_pyr = p->n_cell[VG_SLICE_PYR],
                            .pyr = (uint32_t(*)[5])p->cell[VG_SLICE_PYR],
                            .n_pri = p->n_cell[VG_SLICE_PRI],
-                           .pri = (uint32_t(*)[6])p->cell[VG_SLICE_PRI] };
+                           .pri = (uint32_t(*)[6])p->cell[VG_SLICE_PRI],
+                           .n_hex = p->n_cell[VG_SLICE_HEX],
+                           .hex = (uint32_t(*)[8])p->cell[VG_SLICE_HEX] };
 }
 
 static vg_status read_part(const struct vg_ugrid_slices *u, size_t i,
@@ -313,7 +315,7 @@ static int is_suitable(struct vg_ugrid_slices *u)
   fits = vg_ugrid_check_kind(&in, &u->kind, NULL) >= 0 &&
          vg_ugrid_counts(&in, &u->kind, u->count);
   vg_input_release(&in);
-  if (!fits || u->count[6] || !(u->count[3] + u->count[4] + u->count[5]))
+  if (!fits || !(u->count[3] + u->count[4] + u->count[5] + u->count[6]))
     return 0;
   end = vg_ugrid_nodes_at(&u->kind, u->count, 6);
   is_tail = 8 * (uint64_t)u->kind.int_size + end <= (uint64_t)s.st_size;

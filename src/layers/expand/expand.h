@@ -13,7 +13,7 @@
 #include "layers/columns/columns.h"
 
 enum { VG_FLANK, VG_INNER }; /* Points on a slide patch, and all others. */
-enum { VG_KIND_TET, VG_KIND_PYR, VG_KIND_PRI, VG_N_KIND };
+enum { VG_KIND_TET, VG_KIND_PYR, VG_KIND_PRI, VG_KIND_HEX, VG_N_KIND };
 
 /* Number of faces that are counted together. */
 #define VG_FACE_BLOCK 64
@@ -60,6 +60,7 @@ struct vg_cell_sink {
   uint32_t (*tet)[4];
   uint32_t (*pyr)[5];
   uint32_t (*pri)[6];
+  uint32_t (*hex)[8];
 };
 
 /** Makes all cells of a face whose columns have the points foot at level 0 and

@@ -245,7 +245,7 @@ int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
 
   const uint32_t *f = e->columns->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned n[3], high = 0;
 
   levels_of(e, f, n);
@@ -274,7 +274,7 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
 
   const uint32_t *f = c->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned together = 0;
   int n = 0;
 
@@ -304,7 +304,7 @@ static void count_face(const struct vg_expand *e, const uint32_t f[3],
                        size_t count[VG_N_KIND])
 {
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct vg_cell_sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri, NULL };
   unsigned n[3], low = levels_of(e, f, n), high, mid;
 
   for (int k = 0; k < 3; k++) {

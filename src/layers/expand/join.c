@@ -43,12 +43,13 @@ static void fill_layers(void *context, size_t first, size_t end, int worker)
   const struct vg_columns *c = e->columns;
   size_t last = end * VG_FACE_BLOCK < c->n_face ? end * VG_FACE_BLOCK
                                                 : c->n_face;
-  struct vg_cell_sink s = { NULL, NULL, NULL };
+  struct vg_cell_sink s = { NULL, NULL, NULL, NULL };
 
   (void)worker;
   if (e->n_cell[VG_KIND_TET]) s.tet = j->m->tet + e->cell[VG_KIND_TET][first];
   if (e->n_cell[VG_KIND_PYR]) s.pyr = j->m->pyr + e->cell[VG_KIND_PYR][first];
   if (e->n_cell[VG_KIND_PRI]) s.pri = j->m->pri + e->cell[VG_KIND_PRI][first];
+  if (e->n_cell[VG_KIND_HEX]) s.hex = j->m->hex + e->cell[VG_KIND_HEX][first];
   for (size_t i = first * VG_FACE_BLOCK; i < last; i++) {
     const uint32_t *f = c->face[i];
     const uint32_t foot[3] = { e->foot[f[0]], e->foot[f[1]], e->foot[f[2]] };
@@ -83,10 +84,13 @@ static vg_status make_cells(struct join *j, struct vg_error *err)
   m->n_tet = e->n_cell[VG_KIND_TET] + j->field->n_tet;
   m->n_pyr = e->n_cell[VG_KIND_PYR];
   m->n_pri = e->n_cell[VG_KIND_PRI];
+  m->n_hex = e->n_cell[VG_KIND_HEX];
   m->tet = vg_alloc(m->n_tet, sizeof *m->tet);
   if (m->n_pyr) m->pyr = vg_alloc(m->n_pyr, sizeof *m->pyr);
   if (m->n_pri) m->pri = vg_alloc(m->n_pri, sizeof *m->pri);
-  if (!m->tet || (m->n_pyr && !m->pyr) || (m->n_pri && !m->pri))
+  if (m->n_hex) m->hex = vg_alloc(m->n_hex, sizeof *m->hex);
+  if (!m->tet || (m->n_pyr && !m->pyr) || (m->n_pri && !m->pri) ||
+      (m->n_hex && !m->hex))
     return vg_fail_memory(err, "the cells of the mesh");
   vg_parallel_for(e->threads, e->n_block, BLOCK_GRAIN, fill_layers, j);
   vg_parallel_for(e->threads, j->field->n_tet, FIELD_GRAIN, fill_field, j);

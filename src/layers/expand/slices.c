@@ -20,7 +20,9 @@
 
 _Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&
                  (int)VG_SLICE_PYR == VG_KIND_PYR &&
-                 (int)VG_SLICE_PRI == VG_KIND_PRI,
+                 (int)VG_SLICE_PRI == VG_KIND_PRI &&
+                 (int)VG_SLICE_HEX == VG_KIND_HEX &&
+                 (int)VG_SLICE_KINDS == VG_N_KIND,
                "kinds by the same number");
 
 struct vg_layer_slices {
@@ -291,7 +293,8 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
   VG_TRY(vg_join_check_field(&layers->front, field->n_point,
                              field->boundary ? field->boundary->n_tri : 0,
                              field->n_cell[VG_SLICE_PYR] +
-                               field->n_cell[VG_SLICE_PRI],
+                               field->n_cell[VG_SLICE_PRI] +
+                               field->n_cell[VG_SLICE_HEX],
                              err));
   VG_TRY(vg_join_plan_open(&k->plan, surface, layers,
                            field->n_point - layers->front.n_point, cells,

@@ -59,6 +59,14 @@ struct sliced {
   int refused;             /* 1: memory was refused in a rendezvous. */
 };
 
+static size_t cells_of(const struct at *a)
+{
+  size_t n = 0;
+
+  for (int k = 0; k < VG_SLICE_KINDS; k++) n += a->n_cell[k];
+  return n;
+}
+
 static void release_lists(struct at *a)
 {
   free(a->sum);
@@ -86,12 +94,14 @@ static struct vg_mesh view_of(const struct vg_slice *s)
   struct vg_mesh m = { .n_point = s->n_point,
                        .n_tet = s->n_cell[VG_SLICE_TET],
                        .n_pyr = s->n_cell[VG_SLICE_PYR],
-                       .n_pri = s->n_cell[VG_SLICE_PRI] };
+                       .n_pri = s->n_cell[VG_SLICE_PRI],
+                       .n_hex = s->n_cell[VG_SLICE_HEX] };
 
   memcpy(&m.point, &s->x, sizeof m.point);
   memcpy(&m.tet, &s->cell[VG_SLICE_TET], sizeof m.tet);
   memcpy(&m.pyr, &s->cell[VG_SLICE_PYR], sizeof m.pyr);
   memcpy(&m.pri, &s->cell[VG_SLICE_PRI], sizeof m.pri);
+  memcpy(&m.hex, &s->cell[VG_SLICE_HEX], sizeof m.hex);
   return m;
 }
 
@@ -138,7 +148,7 @@ static vg_status keep_rim(struct at *a, const struct vg_slice *s,
 static vg_status keep_sums(struct at *a, struct vg_units *u,
                            struct vg_error *err)
 {
-  size_t n = a->n_cell[0] + a->n_cell[1] + a->n_cell[2];
+  size_t n = cells_of(a);
 
   a->sum = vg_calloc(u->n_unit, sizeof *a->sum);
   if (!a->sum) return vg_fail_memory(err, "the weights of a slice");
@@ -491,7 +501,7 @@ static void take_parts(struct sliced *w, const uint32_t *part)
 {
   for (size_t i = 0; i < w->k->n; i++) {
     struct at *a = &w->k->at[i];
-    size_t n = a->n_cell[0] + a->n_cell[1] + a->n_cell[2];
+    size_t n = cells_of(a);
 
     for (size_t c = 0; c < n; c++) a->of[c] = part[a->first + a->of[c]];
   }

@@ -34,7 +34,7 @@ void vg_units_release(struct vg_units *u);
 struct vg_unit_options {
   int is_known, is_ours;        /* n_layer is valid; and it is certain, since
                                    Vanguard made the layers. */
-  uint64_t n_layer[3];          /* Layer cells of each kind, which come
+  uint64_t n_layer[4];          /* Layer cells of each kind, which come
                                    first; prisms always count as layer cells. */
   const unsigned char *is_wall; /* See vg_solver_layers. */
   size_t cluster;       /* Cells outside layers per cluster; 1: no clusters. */

@@ -8,8 +8,9 @@
  * (layers/expand/expand_cells.c). If this holds for all cells that are
  * declared as layer cells, joining each cell to the one below gives the
  * stacks. Stacks between the columns of a fan start on the side face of
- * another stack. Prisms of any origin are joined across triangles, and
- * hexahedra from walls upwards. */
+ * another stack. Its hexahedra stand with the nodes 0 to 3 on the one below.
+ * Prisms of any origin are joined across triangles, and hexahedra from walls
+ * upwards. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +69,7 @@ static int is_layer(const struct work *w, uint32_t cell)
   case TET: return w->o->is_known && cell < w->o->n_layer[0];
   case PYR: return w->o->is_known && cell - l->end_tet < w->o->n_layer[1];
   case PRI: return 1;
-  default: return 0;
+  default: return w->o->is_known && cell - l->end_pri < w->o->n_layer[3];
   }
 }
 
@@ -147,6 +148,22 @@ static int join_layers(struct work *w)
   return w->o->is_ours || (!n[NOWHERE] && n[ASIDE] <= n[FIRM] / 2);
 }
 
+/* Joins the hexahedra of Vanguard's layers, whose nodes 0 to 3 are below. */
+static void join_layer_hexahedra(struct work *w)
+{
+  const struct vg_cell_links *l = w->l;
+
+  if (!w->o->is_known || w->u->has_loose) return;
+  for (uint32_t i = 0; i < w->o->n_layer[3]; i++) {
+    uint32_t cell = l->end_pri + i, mate = vg_mate(l, cell << 3 | 4);
+
+    w->stands[cell] = 1;
+    if (mate != NONE && kind_of(l, mate >> 3) == HEX &&
+        is_layer(w, mate >> 3) && (mate & 7) == 5)
+      vg_union(w->up, cell, mate >> 3);
+  }
+}
+
 /* Climbs from a face of a hexahedron on a wall to the hexahedra above.
  * Opposite faces are 0 and 1, 2 and 3, 4 and 5. */
 static void climb(struct work *w, uint32_t code)
@@ -187,6 +204,7 @@ static void join_all(struct work *w)
   for (uint32_t cell = l->end_pyr;
        w->o->is_known && !w->u->has_loose && cell < l->end_pri; cell++)
     stand(w, cell);
+  join_layer_hexahedra(w);
   join_hexahedra(w);
 }
 

@@ -18,9 +18,8 @@ static const double cosine[VG_CUT_ANGLES] = {
   0.86602540378443871, 0.76604444311897801
 };
 
-static const uint8_t corners[VG_SLICE_KINDS] = { 4, 5, 6 };
-static const uint8_t n_edge[VG_SLICE_KINDS] = { 6, 8, 9 };
-static const uint8_t edge[VG_SLICE_KINDS][9][2] = {
+static const uint8_t n_edge[VG_SLICE_KINDS] = { 6, 8, 9, 12 };
+static const uint8_t edge[VG_SLICE_KINDS][CORNERS_MAX][2] = {
   [VG_SLICE_TET] = { { 0, 1 },
                      { 0, 2 },
                      { 0, 3 },
@@ -43,7 +42,19 @@ static const uint8_t edge[VG_SLICE_KINDS][9][2] = {
                      { 5, 3 },
                      { 0, 3 },
                      { 1, 4 },
-                     { 2, 5 } }
+                     { 2, 5 } },
+  [VG_SLICE_HEX] = { { 0, 1 },
+                     { 1, 2 },
+                     { 2, 3 },
+                     { 3, 0 },
+                     { 4, 5 },
+                     { 5, 6 },
+                     { 6, 7 },
+                     { 7, 4 },
+                     { 0, 4 },
+                     { 1, 5 },
+                     { 2, 6 },
+                     { 3, 7 } }
 };
 
 vg_status vg_cuts_new(size_t n, const struct vg_cut *cut, struct vg_cuts **out,
@@ -174,7 +185,8 @@ static uint16_t code_of(const struct vg_slice *s, int kind,
   if (s->kind == 0)
     return CODE(kind == VG_SLICE_TET   ? VG_CUT_LAYER_TET
                 : kind == VG_SLICE_PYR ? VG_CUT_PYRAMID
-                                       : VG_CUT_PRISM,
+                : kind == VG_SLICE_PRI ? VG_CUT_PRISM
+                                       : VG_CUT_HEXAHEDRON,
                 0, VG_CUT_ANGLES, PART_LAYER);
   for (int k = 0; k < 4; k++) x[k] = s->x[node[k]];
   part = s->kind == 2 ? PART_ZONE
@@ -215,7 +227,7 @@ static inline unsigned cuts_of(const uint16_t *above, const uint32_t *node,
 static vg_status draw_kind(const struct drawing *d, int kind,
                            struct vg_error *err)
 {
-  int n = corners[kind];
+  int n = vg_slice_width[kind];
   vg_status st = VG_OK;
 
   for (size_t j = 0; j < d->s->n_cell[kind]; j++) {

@@ -28,7 +28,7 @@ struct vg_cut {
 
 /** Meaning of the colours. */
 enum vg_cut_colours {
-  VG_CUT_BY_KIND, /* Prisms, pyramids, tetrahedra; layers or field. */
+  VG_CUT_BY_KIND, /* Kinds of cells; layers or field. */
   VG_CUT_BY_PART, /* The subdomain in which a cell was made. */
   VG_CUT_BY_ANGLE /* Smallest dihedral angle of the cells of the field. */
 };
@@ -45,6 +45,7 @@ enum vg_cut_kind {
   VG_CUT_LAYER_TET,
   VG_CUT_PYRAMID,
   VG_CUT_PRISM,
+  VG_CUT_HEXAHEDRON,
   VG_CUT_KINDS
 };
 extern const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3];

@@ -6,9 +6,11 @@
 
 #include "run/picture/cuts_parts.h"
 
-const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3] = {
-  { 250, 236, 200 }, { 143, 202, 132 }, { 246, 166, 86 }, { 120, 178, 232 }
-};
+const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3] = { { 250, 236, 200 },
+                                                      { 143, 202, 132 },
+                                                      { 246, 166, 86 },
+                                                      { 120, 178, 232 },
+                                                      { 178, 150, 214 } };
 const uint8_t vg_cut_zone_colour[3] = { 74, 80, 92 };
 const uint8_t vg_cut_angle_colour[VG_CUT_ANGLES + 1][3] = {
   { 170, 0, 30 },    { 226, 88, 40 },   { 246, 170, 80 },

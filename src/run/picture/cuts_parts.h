@@ -13,7 +13,7 @@ enum {
   TILES_X = SAMPLES * VG_CUT_WIDTH / TILE,
   TILES_Y = SAMPLES * VG_CUT_HEIGHT / TILE,
   TILES = TILES_X * TILES_Y,
-  CORNERS_MAX = 8
+  CORNERS_MAX = 12 /* edges of a hexahedron */
 };
 
 /* A sample: 0 if nothing is drawn, or a code that describes the cell. */

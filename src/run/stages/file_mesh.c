@@ -23,9 +23,11 @@ static vg_status get_all(const struct vg_slices *s, size_t i,
   out->n_cell[VG_SLICE_TET] = m->n_tet;
   out->n_cell[VG_SLICE_PYR] = m->n_pyr;
   out->n_cell[VG_SLICE_PRI] = m->n_pri;
+  out->n_cell[VG_SLICE_HEX] = m->n_hex;
   out->cell[VG_SLICE_TET] = (const uint32_t *)m->tet;
   out->cell[VG_SLICE_PYR] = (const uint32_t *)m->pyr;
   out->cell[VG_SLICE_PRI] = (const uint32_t *)m->pri;
+  out->cell[VG_SLICE_HEX] = (const uint32_t *)m->hex;
   return VG_OK;
 }
 
@@ -59,15 +61,17 @@ static vg_status serve(struct vg_file_mesh *f, struct vg_error *err)
     return vg_fail_memory(err, "the mesh");
   }
   for (size_t p = 0; p < m->n_point; p++) f->identity[p] = (uint32_t)p;
-  f->slices = (struct vg_slices){ .n_point = m->n_point,
-                                  .n_cell = { m->n_tet, m->n_pyr, m->n_pri },
-                                  .n_boundary_point = leading_boundary(m, on),
-                                  .boundary = m,
-                                  .n_slice = 1,
-                                  .n_served = m->n_tet + m->n_pyr + m->n_pri,
-                                  .get = get_all,
-                                  .put = put_all,
-                                  .user = f };
+  f->slices = (struct vg_slices){
+    .n_point = m->n_point,
+    .n_cell = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex },
+    .n_boundary_point = leading_boundary(m, on),
+    .boundary = m,
+    .n_slice = 1,
+    .n_served = m->n_tet + m->n_pyr + m->n_pri + m->n_hex,
+    .get = get_all,
+    .put = put_all,
+    .user = f
+  };
   free(on);
   return VG_OK;
 }

@@ -194,6 +194,8 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
     print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
   if (m->slices.n_cell[VG_SLICE_PRI])
     print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
+  if (m->slices.n_cell[VG_SLICE_HEX])
+    print_count(to, "hexahedra", m->slices.n_cell[VG_SLICE_HEX]);
   if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   if (m->parts) {
