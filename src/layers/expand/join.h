@@ -12,10 +12,10 @@ struct vg_join_info {
   size_t n_boundary_point; /* Boundary points; they come first. */
   size_t n_layer_point;    /* One past the index of the last layer point
                               (npv). */
-  size_t n_layer_tet, n_layer_pyr, n_layer_pri; /* Number of layer cells, which
-                                                   are the first of their
-                                                   kind. */
-  double time;                                  /* Wall-clock seconds. */
+  size_t n_layer_tet, n_layer_pyr, n_layer_pri, n_layer_hex; /* Number of layer
+                                                   cells, which are the first of
+                                                   their kind. */
+  double time; /* Wall-clock seconds. */
 };
 
 /** Merges layers and field into one mesh.

@@ -168,5 +168,6 @@ void vg_join_plan_describe(const struct vg_join_plan *p, double time,
   info->n_layer_tet = e->n_cell[VG_KIND_TET];
   info->n_layer_pyr = e->n_cell[VG_KIND_PYR];
   info->n_layer_pri = e->n_cell[VG_KIND_PRI];
+  info->n_layer_hex = e->n_cell[VG_KIND_HEX];
   info->time = time;
 }

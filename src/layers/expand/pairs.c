@@ -258,6 +258,8 @@ static int is_good(const struct vg_expand *e, const struct vg_mesh *surface,
   uint32_t q[4], foot[4], base[4];
 
   vg_pair_corners(e, face, q);
+  for (int k = 0; k < 4; k += 2)
+    if (vg_mark_n(e->mark[q[k]]) != vg_mark_n(e->mark[q[k + 1]])) return 0;
   if (vg_pair_levels(e, q) < 2) return 0;
   load(e, surface, q, &s);
   for (uint32_t k = 0; k < 4; k++) {

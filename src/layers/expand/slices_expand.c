@@ -137,7 +137,6 @@ static vg_status reserve_slice(const struct run *r, size_t n_point,
                                struct vg_layer_slice *at, struct vg_slice *s,
                                struct vg_error *err)
 {
-  static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6, 8 };
   const struct vg_expand *e = &r->p->expand;
   int refused;
 
@@ -151,7 +150,8 @@ static vg_status reserve_slice(const struct run *r, size_t n_point,
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
     s->cell_at[k] = e->cell[k][r->first];
     s->n_cell[k] = e->cell[k][r->end] - e->cell[k][r->first];
-    at->cell[k] = vg_alloc(s->n_cell[k], n_node[k] * sizeof *at->cell[k]);
+    at->cell[k] = vg_alloc(s->n_cell[k],
+                           vg_slice_width[k] * sizeof *at->cell[k]);
     refused |= !at->cell[k];
     s->cell[k] = at->cell[k];
   }
