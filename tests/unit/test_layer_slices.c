@@ -240,13 +240,14 @@ static void same_counts(const struct vg_mesh *m, const struct vg_join_info *a,
                         const struct vg_slices *s, const struct vg_join_info *b)
 {
   const size_t n_layer[VG_SLICE_KINDS] = { a->n_layer_tet, a->n_layer_pyr,
-                                           a->n_layer_pri };
+                                           a->n_layer_pri, a->n_layer_hex };
 
   assert_int_equal(a->n_boundary_point, b->n_boundary_point);
   assert_int_equal(a->n_layer_point, b->n_layer_point);
   assert_int_equal(a->n_layer_tet, b->n_layer_tet);
   assert_int_equal(a->n_layer_pyr, b->n_layer_pyr);
   assert_int_equal(a->n_layer_pri, b->n_layer_pri);
+  assert_int_equal(a->n_layer_hex, b->n_layer_hex);
   assert_int_equal(s->n_point, m->n_point);
   assert_int_equal(s->n_boundary_point, a->n_boundary_point);
   assert_int_equal(s->n_layer_point, a->n_layer_point);
@@ -332,8 +333,8 @@ static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
                        size_t n_face, double *ratio)
 {
   const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
-                                           info->n_layer_pri };
-  struct side *side = vg_alloc(4 * (m->n_tet + m->n_pyr + m->n_pri),
+                                           info->n_layer_pri, info->n_layer_hex };
+  struct side *side = vg_alloc(4 * (m->n_tet + m->n_pyr + m->n_pri + m->n_hex),
                                sizeof *side);
   size_t n = list_sides(m, n_layer, side), n_top = 0;
   double *want = vg_calloc(n_face, sizeof *want);
@@ -467,7 +468,7 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
   struct vg_join_plan plan;
   struct check c;
   const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
-                                           info->n_layer_pri };
+                                           info->n_layer_pri, info->n_layer_hex };
 
   check_start(&c, whole);
   assert_int_equal(vg_join_plan_open(&plan, &m->surface, &m->layers,
