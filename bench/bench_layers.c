@@ -200,7 +200,7 @@ static vg_status join(const struct bench *b, const struct vg_layers *layers,
   st = vg_layers_join(&b->surface, layers, field, (enum vg_layer_cells)kind,
                       b->o.threads, &m, &f->join[kind], err);
   f->joined[kind] = since(start);
-  f->n_cell[kind] = m.n_tet + m.n_pyr + m.n_pri;
+  f->n_cell[kind] = m.n_tet + m.n_pyr + m.n_pri + m.n_hex;
   if (st < 0 || !b->o.out) goto done;
   unlink(b->o.out);
   start = now();

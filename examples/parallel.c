@@ -12,7 +12,7 @@ static int measure_pieces(vanguard_job *job, double sum[2])
     struct vanguard_piece p = VANGUARD_INIT(p);
 
     if (vanguard_piece_get(job, i, &p)) return -1;
-    sum[0] += (double)(p.n_tet + p.n_pyr + p.n_pri);
+    sum[0] += (double)(p.n_tet + p.n_pyr + p.n_pri + p.n_hex);
     for (size_t c = 0; c < p.n_tet; c++) {
       double e[3][3];
 

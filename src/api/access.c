@@ -51,6 +51,8 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
   n.n_layer_pyr = s->n_layer_cell[VG_SLICE_PYR];
   n.n_layer_pri = s->n_layer_cell[VG_SLICE_PRI];
   n.n_patch = s->boundary->n_patch;
+  n.n_hex = s->n_cell[VG_SLICE_HEX];
+  n.n_layer_hex = s->n_layer_cell[VG_SLICE_HEX];
   return vg_job_status(vg_job_give(job, out, &n, sizeof n));
 }
 

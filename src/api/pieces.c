@@ -15,7 +15,6 @@ struct arrays {
 static vg_status fill_arrays(void *context, const struct vg_slice *s,
                              struct vg_error *err)
 {
-  static const size_t width[VG_SLICE_KINDS] = { 4, 5, 6 };
   const struct arrays *a = context;
 
   (void)err;
@@ -23,20 +22,18 @@ static vg_status fill_arrays(void *context, const struct vg_slice *s,
     memcpy(a->xyz + 3 * (s->point_at + k), s->x[s->own[k]], sizeof *s->x);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
     uint32_t *to = a->cell[k];
-    size_t n = s->n_cell[k] * width[k];
+    size_t n = s->n_cell[k] * vg_slice_width[k];
 
     if (!to) continue;
-    to += s->cell_at[k] * width[k];
+    to += s->cell_at[k] * vg_slice_width[k];
     for (size_t i = 0; i < n; i++) to[i] = s->id[s->cell[k][i]];
   }
   return VG_OK;
 }
 
-vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
-                                uint32_t *pyr, uint32_t *pri)
+static vanguard_status copy(vanguard_job *job, struct arrays a)
 {
   VG_JOB_CALL(job);
-  struct arrays a = { xyz, { tet, pyr, pri } };
   vg_status st = vg_job_meshed(job);
 
   if (st < 0) return vg_job_status(st);
@@ -55,6 +52,17 @@ vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
   st = vg_slices_each(&job->run.slices, job->run.threads, fill_arrays, &a,
                       &job->err);
   return vg_job_status(st);
+}
+
+vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
+                                uint32_t *pyr, uint32_t *pri)
+{
+  return copy(job, (struct arrays){ xyz, { tet, pyr, pri, NULL } });
+}
+
+vanguard_status vanguard_hexahedra(vanguard_job *job, uint32_t *hex)
+{
+  return copy(job, (struct arrays){ NULL, { NULL, NULL, NULL, hex } });
 }
 
 size_t vanguard_pieces(const vanguard_job *job)
@@ -153,6 +161,9 @@ vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
   p.tet = slice->cell[VG_SLICE_TET];
   p.pyr = slice->cell[VG_SLICE_PYR];
   p.pri = slice->cell[VG_SLICE_PRI];
+  p.hex_at = slice->cell_at[VG_SLICE_HEX];
+  p.n_hex = slice->n_cell[VG_SLICE_HEX];
+  p.hex = slice->cell[VG_SLICE_HEX];
   p.subdomain = slice->domain;
   p.keep = (void *)number;
   st = vg_job_give(job, out, &p, sizeof p);

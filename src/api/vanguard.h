@@ -443,8 +443,8 @@ VANGUARD_API vanguard_status vanguard_report(vanguard_job *job,
  *
  * Cells follow the node order of AFLR's UGRID. Tetrahedron: 0 1 2 is
  * counter-clockwise seen from 3. Pyramid: base 0 3 4 1, apex 2. Prism: triangle
- * 0 1 2 below triangle 3 4 5. Boundary faces are counter-clockwise seen from
- * the fluid. */
+ * 0 1 2 below triangle 3 4 5. Hexahedron: quadrilateral 0 1 2 3 below 4 5 6 7.
+ * Boundary faces are counter-clockwise seen from the fluid. */
 
 /** Size of the whole mesh; the same on every rank. Boundary points come first,
  * followed by the other layer points. Within each kind of cell, layer cells
@@ -457,6 +457,7 @@ struct vanguard_counts {
   uint64_t n_layer_point; /* points from this number on are outside layers */
   uint64_t n_layer_tet, n_layer_pyr, n_layer_pri;
   size_t n_patch;
+  uint64_t n_hex, n_layer_hex;
 };
 VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
                                             struct vanguard_counts *out);
@@ -481,6 +482,11 @@ VANGUARD_API vanguard_status vanguard_arrays(vanguard_job *job, double *xyz,
                                              uint32_t *tet, uint32_t *pyr,
                                              uint32_t *pri);
 
+/** Copy the hexahedra into hex: [n_hex][8], as vanguard_arrays copies the other
+ * cells. */
+VANGUARD_API vanguard_status vanguard_hexahedra(vanguard_job *job,
+                                                uint32_t *hex);
+
 /** A piece of the mesh held by this rank. The pieces of all ranks together are
  * the mesh: each cell is in exactly one piece, and each point is owned by
  * exactly one. The set of pieces depends on the input alone, but their
@@ -500,6 +506,9 @@ struct vanguard_piece {
   const uint32_t *tet, *pyr, *pri; /* [][4], [][5], [][6] points of the piece */
   uint32_t subdomain;              /* task that made the cells; 0: layers */
   void *keep;                      /* internal */
+  uint64_t hex_at;
+  size_t n_hex;
+  const uint32_t *hex; /* [][8] */
 };
 VANGUARD_API size_t vanguard_pieces(const vanguard_job *job);
 

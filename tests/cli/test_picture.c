@@ -196,6 +196,56 @@ static void test_cut_of_a_cube(void **state)
   vg_cuts_free(c);
 }
 
+/* Area of the cut of a hexahedron of the layers with these corners. */
+static double area_of_cut(const double (*x)[3], double at)
+{
+  static const uint32_t hex[8] = { 0, 1, 3, 2, 4, 5, 7, 6 };
+  const struct vg_cut cut = { .axis = 2, .at = at, .width = 4 };
+  const struct vg_slice s = { .n_point = 8,
+                              .x = x,
+                              .id = ids,
+                              .n_cell = { [VG_SLICE_HEX] = 1 },
+                              .cell = { [VG_SLICE_HEX] = hex } };
+  struct vg_cuts *c = cuts_of(1, &cut);
+  struct vg_image m = VG_IMAGE_INIT;
+  size_t n = 0;
+
+  assert_int_equal(vg_cuts_put(c, &s, NULL), VG_OK);
+  assert_int_equal(vg_cuts_gather(c, NULL, NULL), VG_OK);
+  assert_int_equal(vg_cuts_image(c, 0, VG_CUT_BY_KIND, &m, NULL), VG_OK);
+  assert_memory_equal(m.rgba[VG_CUT_WIDTH * (VG_CUT_HEIGHT + 1) / 2],
+                      vg_cut_kind_colour[VG_CUT_HEXAHEDRON], 3);
+  for (size_t i = 0; i < VG_CUT_WIDTH * VG_CUT_HEIGHT; i++)
+    n += m.rgba[i][3] > 127;
+  vg_image_release(&m);
+  vg_cuts_free(c);
+  return (double)n * 16 / VG_CUT_WIDTH / VG_CUT_WIDTH;
+}
+
+/* Across an axis a square, across a diagonal a triangle or a hexagon. */
+static void test_cut_of_a_hexahedron(void **state)
+{
+  static const double turn[3][3] = {
+    { M_SQRT1_2, -M_SQRT1_2, 0 },
+    { 0.40824829046386302, 0.40824829046386302, -0.81649658092772603 },
+    { 0.57735026918962576, 0.57735026918962576, 0.57735026918962576 }
+  };
+  double x[8][3], y[8][3];
+
+  (void)state;
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < 3; k++) x[i][k] = cube[i][k] - 0.5;
+    for (int k = 0; k < 3; k++)
+      y[i][k] = turn[k][0] * x[i][0] + turn[k][1] * x[i][1] +
+                turn[k][2] * x[i][2];
+  }
+  assert_true(fabs(area_of_cut((const double(*)[3])x, 0.2) - 1) < 0.01);
+  assert_true(fabs(area_of_cut((const double(*)[3])y, 0) - 0.75 * sqrt(3)) <
+              0.01);
+  assert_true(fabs(area_of_cut((const double(*)[3])y, 0.5) -
+                   1.5 * sqrt(3) * pow(0.5 * sqrt(3) - 0.5, 2)) < 0.01);
+}
+
 /* The picture is the same for any order and any grouping of the cells. */
 static void test_cut_in_any_order(void **state)
 {
@@ -399,15 +449,17 @@ static void test_around(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_png),
-                                      cmocka_unit_test(
-                                        test_png_of_many_colours),
-                                      cmocka_unit_test(test_cut_of_a_cube),
-                                      cmocka_unit_test(test_cut_in_any_order),
-                                      cmocka_unit_test(test_shot),
-                                      cmocka_unit_test(test_decimate),
-                                      cmocka_unit_test(test_body),
-                                      cmocka_unit_test(test_around) };
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_png),
+    cmocka_unit_test(test_png_of_many_colours),
+    cmocka_unit_test(test_cut_of_a_cube),
+    cmocka_unit_test(test_cut_of_a_hexahedron),
+    cmocka_unit_test(test_cut_in_any_order),
+    cmocka_unit_test(test_shot),
+    cmocka_unit_test(test_decimate),
+    cmocka_unit_test(test_body),
+    cmocka_unit_test(test_around)
+  };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 
 #include "../unit/judge_support.h"
 #include "../unit/metric_support.h"
+#include "../unit/mixed_cut.h"
 
 static void check(const struct vg_mesh *m, const struct vg_sizing *sizing,
                   size_t n_slice, int threads)
@@ -51,6 +52,19 @@ static void ranks_agree_with_one_piece(void **state)
     vg_sizing_free(sizing);
     vg_mesh_release(&m);
   }
+}
+
+static void ranks_agree_on_hexahedra(void **state)
+{
+  struct vg_join_info info;
+  struct vg_mesh m;
+
+  (void)state;
+  mixed_cut_mesh(&m, &info);
+  check(&m, NULL, 1, 1);
+  check(&m, NULL, 9, 1);
+  check(&m, NULL, 30, 2);
+  vg_mesh_release(&m);
 }
 
 static void ranks_agree_in_a_metric(void **state)
@@ -134,6 +148,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(ranks_agree_with_one_piece),
+    cmocka_unit_test(ranks_agree_on_hexahedra),
     cmocka_unit_test(ranks_agree_in_a_metric),
     cmocka_unit_test(ranks_count_every_damage),
     cmocka_unit_test(invalid_points_end_the_check_on_all_ranks),

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include "../unit/slices_support.h"
+#include "../unit/mixed_cut.h"
 #include "io/stream/metis_part.h"
 #include "io/slices/slices.h"
 #include "partition/solver/solver.h"
@@ -37,12 +37,12 @@ static void find_parts(struct vg_comm *comm, const struct vg_mesh *m,
                        struct parts *out)
 {
   struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
-  size_t n = m->n_tet + m->n_pyr + m->n_pri;
+  size_t n = mixed_n_cell(m);
   uint64_t *v = vg_calloc(n, sizeof *v);
   struct vg_solver_slices *k = NULL;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_slices parted;
-  uint32_t *at[3];
+  uint32_t *at[VG_SLICE_KINDS];
 
   o.n_part = N_PART;
   o.threads = threads;
@@ -54,6 +54,7 @@ static void find_parts(struct vg_comm *comm, const struct vg_mesh *m,
   at[0] = out->part;
   at[1] = at[0] + m->n_tet;
   at[2] = at[1] + m->n_pyr;
+  at[3] = at[2] + m->n_pri;
   assert_int_equal(vg_slices_each(&parted, 1, keep, at, &err), VG_OK);
   for (size_t i = 0; i < n; i++) v[i] = out->part[i];
   assert_int_equal(vg_comm_sum(comm, n, v, &err), VG_OK);
@@ -87,7 +88,9 @@ static void same_file(const char *stem, size_t n, const uint32_t *part)
   unlink(path);
 }
 
-static void check(enum vg_layer_cells cells, int threads, uint64_t above)
+enum mesh { TETS, MIXED, HEXAHEDRA };
+
+static void check(enum mesh which, int threads, uint64_t above)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_join_info info;
@@ -100,9 +103,11 @@ static void check(enum vg_layer_cells cells, int threads, uint64_t above)
            vg_comm_size(job), vg_comm_rank(job));
   snprintf(stem, sizeof stem, "%s/solver_%d_all", VG_TMP_DIR,
            vg_comm_size(job));
-  cut_mesh(&m, &info, cells);
-  n = m.n_tet + m.n_pyr + m.n_pri;
+  if (which == HEXAHEDRA) mixed_cut_mesh(&m, &info);
+  else cut_mesh(&m, &info, which == TETS ? VG_LAYER_TETS : VG_LAYER_MIXED);
+  n = mixed_n_cell(&m);
   cut_make(&c, &m, N_SLICE, 0, &info, 11);
+  c.s.n_layer_cell[VG_SLICE_HEX] = m.n_hex;
   find_parts(NULL, &m, &c.s, 1, above, alone, &one);
   cut_deal(&c, vg_comm_rank(job), vg_comm_size(job));
   find_parts(job, &m, &c.s, threads, above, stem, &all);
@@ -125,9 +130,10 @@ static void same_parts_for_any_ranks_and_threads(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 3; threads++) {
-    check(VG_LAYER_TETS, threads, 0);
-    check(VG_LAYER_MIXED, threads, 0);
-    check(VG_LAYER_TETS, threads, 300);
+    check(TETS, threads, 0);
+    check(MIXED, threads, 0);
+    check(HEXAHEDRA, threads, 0);
+    check(TETS, threads, 300);
   }
 }
 

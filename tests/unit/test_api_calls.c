@@ -556,6 +556,7 @@ static void call_arrays(void)
   }
   if (vanguard_count(j, &n) < 0) {
     expect(j, vanguard_arrays(j, NULL, NULL, NULL, NULL));
+    expect(j, vanguard_hexahedra(j, NULL));
     assert_null(vanguard_triangles(j));
     assert_null(vanguard_quads(j));
     assert_null(vanguard_quad_patches(j));
@@ -567,6 +568,7 @@ static void call_arrays(void)
   assert_true(
     expect(j, vanguard_arrays(j, pick(4) ? x : NULL, tet, NULL, NULL)));
   for (size_t i = 0; i < 4 * n.n_tet; i++) assert_true(tet[i] < n.n_point);
+  assert_true(expect(j, vanguard_hexahedra(j, NULL)));
   tri = vanguard_triangles(j);
   for (size_t i = 0; i < 3 * n.n_tri; i++) assert_true(tri[i] < n.n_point);
   free(x);

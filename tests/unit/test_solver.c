@@ -13,6 +13,7 @@
 #include "join_support.h"
 #include "partition/solver/solver.h"
 #include "parts_support.h"
+#include "slices_support.h"
 
 enum { SIDE = 10, N_HEX = SIDE * SIDE * SIDE };
 
@@ -384,6 +385,52 @@ static void hexahedra_stand_on_walls(void **state)
   vg_mesh_release(&m);
 }
 
+/* In slices, hexahedra of the layers are joined with those below them. */
+static void stack_in_slices(const struct vg_mesh *m, size_t n_slice,
+                            uint32_t n_level, struct vg_solver_report *r)
+{
+  const struct vg_solver_options o = parts(4);
+  struct vg_solver_slices *k = NULL;
+  struct vg_slices parted;
+  uint32_t part[N_HEX];
+  struct vg_error err = VG_ERROR_INIT;
+  struct cut c;
+
+  cut_make(&c, m, n_slice, 0, NULL, 3);
+  c.s.n_layer_cell[VG_SLICE_HEX] = n_level * SIDE * SIDE;
+  if (vg_solver_part_slices(NULL, &c.s, &o, &parted, &k, r, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_int_equal(vg_slices_collect_parts(&parted, 1, part, &err), VG_OK);
+  for (size_t i = 0; i < N_HEX; i++) assert_in_range(part[i], 0, 3);
+  for (size_t i = SIDE * SIDE; n_slice == 1 && i < n_level * SIDE * SIDE; i++)
+    assert_int_equal(part[i], part[i % (SIDE * SIDE)]);
+  assert_int_equal(r->n_cell, N_HEX);
+  vg_solver_slices_close(k);
+  cut_release(&c);
+}
+
+static void hexahedra_of_layers_are_stacked_in_slices(void **state)
+{
+  struct vg_solver_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  needs_metis();
+  make_cube(&m);
+  for (uint32_t n_level = 2; n_level <= SIDE; n_level += 4) {
+    stack_in_slices(&m, 1, n_level, &r);
+    assert_int_equal(r.n_stack, SIDE * SIDE);
+    assert_int_equal(r.most_stack, n_level);
+    assert_int_equal(r.n_stack_cell, n_level * SIDE * SIDE);
+    assert_int_equal(r.n_vertex, N_HEX - (n_level - 1) * SIDE * SIDE);
+    stack_in_slices(&m, 7, n_level, &r);
+    assert_true(r.most_stack <= n_level);
+  }
+  stack_in_slices(&m, 1, 0, &r);
+  assert_int_equal(r.n_stack, 0);
+  vg_mesh_release(&m);
+}
+
 /* --- files --------------------------------------------------------------- */
 
 static void expect_text(const char *path, const char *want)
@@ -472,6 +519,7 @@ int main(void)
     cmocka_unit_test(a_wrong_number_of_layers_is_noticed),
     cmocka_unit_test(refuses_parts_that_cannot_be),
     cmocka_unit_test(hexahedra_stand_on_walls),
+    cmocka_unit_test(hexahedra_of_layers_are_stacked_in_slices),
     cmocka_unit_test(writes_parts_as_metis_does),
     cmocka_unit_test(writes_parts_for_openfoam),
     cmocka_unit_test(reads_the_number_of_layer_tetrahedra),

@@ -34,29 +34,6 @@ static void near_to(double got, double want)
 
 enum { SIDE = 3, ROW = SIDE + 1, LEVEL = ROW * ROW };
 
-/* The faces of all hexahedra that belong to one only, turned inwards. */
-static void close_hexes(struct vg_mesh *m)
-{
-  const struct vg_cell_faces *f = &vg_cell_faces[VG_CELL_HEX];
-  struct judge_side *s = vg_alloc(6 * m->n_hex, sizeof *s);
-  size_t n = 0;
-
-  shape_need(s);
-  for (size_t i = 0; i < m->n_hex; i++)
-    for (int k = 0; k < 6; k++) s[n++] = judge_side(m->hex[i], f->node[k], 4);
-  qsort(s, n, sizeof *s, judge_by_key);
-  m->quad = vg_alloc(n, sizeof *m->quad);
-  shape_need(m->quad);
-  for (size_t i = 0, j; i < n; i = j) {
-    for (j = i + 1; j < n && !judge_by_key(s + i, s + j); j++) {
-    }
-    if (j - i > 1) continue;
-    for (int k = 0; k < 4; k++) m->quad[m->n_quad][k] = s[i].node[3 - k];
-    m->n_quad++;
-  }
-  free(s);
-}
-
 /* A block of SIDE^3 cubes with levels at these heights, sheared in x. */
 static struct vg_mesh hexes(const double z[ROW], double shear)
 {
@@ -76,7 +53,7 @@ static struct vg_mesh hexes(const double z[ROW], double shear)
 
     memcpy(m.hex[m.n_hex++], node, sizeof node);
   }
-  close_hexes(&m);
+  judge_close(&m);
   return m;
 }
 

@@ -101,7 +101,7 @@ static vanguard_job *new_cube(void)
 struct arrays {
   struct vanguard_counts n;
   double *x;
-  uint32_t *cell[3];
+  uint32_t *cell[4];
 };
 
 static void take(vanguard_job *job, struct arrays *a)
@@ -112,24 +112,28 @@ static void take(vanguard_job *job, struct arrays *a)
   a->cell[0] = calloc(a->n.n_tet + 1, 4 * sizeof *a->cell[0]);
   a->cell[1] = calloc(a->n.n_pyr + 1, 5 * sizeof *a->cell[1]);
   a->cell[2] = calloc(a->n.n_pri + 1, 6 * sizeof *a->cell[2]);
+  a->cell[3] = calloc(a->n.n_hex + 1, 8 * sizeof *a->cell[3]);
   CHECK(vanguard_arrays(job, a->x, a->cell[0], a->cell[1], a->cell[2]) ==
         VANGUARD_OK);
+  CHECK(vanguard_hexahedra(job, a->cell[3]) == VANGUARD_OK);
 }
 
 static void drop(struct arrays *a)
 {
   free(a->x);
-  for (int k = 0; k < 3; k++) free(a->cell[k]);
+  for (int k = 0; k < 4; k++) free(a->cell[k]);
 }
 
 static int same(const struct arrays *a, const struct arrays *b)
 {
   return a->n.n_point == b->n.n_point && a->n.n_tet == b->n.n_tet &&
          a->n.n_pri == b->n.n_pri && a->n.n_pyr == b->n.n_pyr &&
+         a->n.n_hex == b->n.n_hex &&
          !memcmp(a->x, b->x, a->n.n_point * 3 * sizeof *a->x) &&
          !memcmp(a->cell[0], b->cell[0], a->n.n_tet * 16) &&
          !memcmp(a->cell[1], b->cell[1], a->n.n_pyr * 20) &&
-         !memcmp(a->cell[2], b->cell[2], a->n.n_pri * 24);
+         !memcmp(a->cell[2], b->cell[2], a->n.n_pri * 24) &&
+         !memcmp(a->cell[3], b->cell[3], a->n.n_hex * 32);
 }
 
 static double volume_of(const struct arrays *a)

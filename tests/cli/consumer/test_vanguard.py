@@ -552,6 +552,47 @@ def test_read(folder):
     refused("io", "nowhere", vanguard.read, "/nowhere/mesh.ugrid")
 
 
+def test_hexahedra(folder):
+    """A bar of three hexahedra in a file."""
+    at = [(x, y, z) for x in range(4) for y in (0, 1) for z in (0, 1)]
+    number = {p: i + 1 for i, p in enumerate(at)}
+
+    def corners(*of):
+        return [number[p] for p in of]
+
+    hexes, quads = [], []
+    for x in range(3):
+        low, high = x, x + 1
+        hexes.append(corners(
+            (low, 0, 0), (high, 0, 0), (high, 1, 0), (low, 1, 0),
+            (low, 0, 1), (high, 0, 1), (high, 1, 1), (low, 1, 1)))
+        a = hexes[-1]
+        quads += [[a[k] for k in side] for side in (
+            (0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (2, 6, 7, 3))]
+        if x == 0:
+            quads.append([a[k] for k in (0, 3, 7, 4)])
+        if x == 2:
+            quads.append([a[k] for k in (1, 5, 6, 2)])
+    path = os.path.join(folder, "bar.lb8.ugrid")
+    with open(path, "wb") as f:
+        np.array([len(at), 0, len(quads), 0, 0, 0, 3], "<i4").tofile(f)
+        np.array(at, "<f8").tofile(f)
+        for block in quads, [1] * len(quads), hexes:
+            np.array(block, "<i4").tofile(f)
+    mesh = vanguard.read(path)
+    assert np.array_equal(mesh.hexahedra, np.array(hexes) - 1)
+    assert mesh.counts.n_hex == 3 and not len(mesh.prisms)
+    assert "3 hexahedra" in repr(mesh)
+    assert mesh.quality["is_valid"] == 1
+    assert abs(mesh.quality["volume"] - 3) < 1e-12
+    (piece,) = mesh.pieces()
+    assert np.array_equal(piece["hexahedra"], mesh.hexahedra)
+    cells, types, unused = mesh.to_vtk_arrays()
+    assert (types == 12).all() and len(cells) == 27
+    assert ("hexahedron", 3) in [
+        (kind, len(nodes)) for kind, nodes in mesh.to_meshio_dict()["cells"]]
+
+
 def test_same_as_program(folder, program):
     """A project with layers, for which TetGen is used too, gives the same bytes."""
     stem = os.path.join(folder, "demo", "wing-half")
