@@ -159,7 +159,7 @@ struct vg_mesh_report {
  * tetrahedra, and the report has figures in the metric. Extreme angles are
  * computed with libm and only used for reporting. Cost: O(n) memory for one
  * face table, O(n log n) time or better; in a metric, 56 bytes per point more;
- * 9 bytes per tetrahedron and 37 per other cell for the quality in the terms of
+ * 9 bytes per tetrahedron and 41 per other cell for the quality in the terms of
  * solvers.
  * VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with is_valid 0.
  */

@@ -19,8 +19,7 @@ vg_status vg_solver_begin(struct vg_solver_sweep *s, const struct vg_mesh *m,
 
   assert(s && m && f);
   if (vg_reserve(&s->quality, &s->room[0], n, sizeof *s->quality) ||
-      vg_reserve(&s->determinant, &s->room[1], m->n_tet,
-                 sizeof *s->determinant) ||
+      vg_reserve(&s->determinant, &s->room[1], n, sizeof *s->determinant) ||
       vg_reserve(&s->border, &s->room[2], n, 1) ||
       vg_reserve(&s->middle, &s->room[3], n - m->n_tet, sizeof *s->middle))
     return vg_fail_memory(err, "the quality of the cells");
@@ -47,22 +46,27 @@ size_t vg_solver_bytes(const struct vg_mesh *m)
 {
   size_t mixed = m->n_pyr + m->n_pri + m->n_hex;
 
-  return (m->n_tet + mixed) * (sizeof(float) + 1) + m->n_tet * sizeof(float) +
+  return (m->n_tet + mixed) * (2 * sizeof(float) + 1) +
          mixed * sizeof(struct vg_cell_middle);
 }
 
 /* --- cells ---------------------------------------------------------------- */
 
 /* Nodes of a cell, and its kind. */
-static const uint32_t *cell_of(const struct vg_mesh *m, size_t cell, int *kind)
+static inline const uint32_t *cell_of(const struct vg_mesh *m, size_t cell,
+                                      int *kind)
 {
-  struct vg_cells c;
+  size_t at = cell - m->n_tet;
 
   *kind = VG_CELL_TET;
   if (cell < m->n_tet) return m->tet[cell];
-  do c = vg_mesh_cells(m, ++*kind);
-  while (cell >= c.first + c.n);
-  return c.node + (cell - c.first) * (size_t)vg_cell_faces[*kind].n_node;
+  *kind = VG_CELL_PYR;
+  if (at < m->n_pyr) return m->pyr[at];
+  at -= m->n_pyr;
+  *kind = VG_CELL_PRI;
+  if (at < m->n_pri) return m->pri[at];
+  *kind = VG_CELL_HEX;
+  return m->hex[at - m->n_pri];
 }
 
 /* Corners of face j; returns their number. */
@@ -113,12 +117,57 @@ static uint64_t number_of(const struct vg_solver_sweep *s, size_t cell)
   return s->first[VG_CELL_HEX] + at - m->n_pri;
 }
 
-/* Centre, volume and the cosines between A and f. */
+/* From the area vectors of n faces. */
+static double determinant_of(const double (*a)[3], int n)
+{
+  double mean = 0, t[6] = { 0 }, scale;
+
+  for (int i = 0; i < n; i++) mean += vg_norm(a[i]);
+  if (!(mean > 0)) return 0;
+  scale = n / mean;
+  for (int i = 0; i < n; i++) {
+    const double x = a[i][0] * scale, y = a[i][1] * scale, z = a[i][2] * scale;
+
+    t[0] += x * x;
+    t[1] += x * y;
+    t[2] += x * z;
+    t[3] += y * y;
+    t[4] += y * z;
+    t[5] += z * z;
+  }
+  return fabs(t[0] * (t[3] * t[5] - t[4] * t[4]) -
+              t[1] * (t[1] * t[5] - t[4] * t[2]) +
+              t[2] * (t[1] * t[4] - t[3] * t[2])) /
+         8;
+}
+
+/* From the faces of a cell that are not on the boundary. */
+static double inner_determinant(const struct vg_solver_sweep *s, size_t cell)
+{
+  double a[6][3];
+  int kind, n = 0;
+  const uint32_t *node = cell_of(s->m, cell, &kind);
+
+  for (int j = 0; j < vg_cell_faces[kind].n_face; j++) {
+    double x[4][3];
+    struct vg_face_shape shape;
+    int corners;
+
+    if (s->border[cell] >> j & 1) continue;
+    corners = face_corners(s->m, kind, node, j, x);
+    vg_face_shape((const double(*)[3])x, corners, &shape);
+    memcpy(a[n++], shape.area, sizeof shape.area);
+  }
+  return determinant_of((const double(*)[3])a, n);
+}
+
+/* Centre, volume, determinant and the cosines between A and f. */
 static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 {
   struct vg_cell_middle *middle = &s->middle[cell - s->m->n_tet];
   struct vg_face_shape shape[6];
   double mean[3] = { 0, 0, 0 }, sum[3] = { 0, 0, 0 }, total = 0, least = 1;
+  double area[6][3];
   int kind;
   const uint32_t *node = cell_of(s->m, cell, &kind);
   int n_face = vg_cell_faces[kind].n_face;
@@ -128,8 +177,11 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
     int n = face_corners(s->m, kind, node, j, x);
 
     vg_face_shape((const double(*)[3])x, n, &shape[j]);
+    memcpy(area[j], shape[j].area, sizeof area[j]);
     for (int k = 0; k < 3; k++) mean[k] += shape[j].centre[k] / n_face;
   }
+  s->determinant[cell] = (float)determinant_of((const double(*)[3])area,
+                                               n_face);
   for (int j = 0; j < n_face; j++) {
     const double *c = shape[j].centre;
     double d[3], part;
@@ -157,42 +209,6 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 void vg_solver_measure_mixed(struct vg_solver_sweep *s)
 {
   for (size_t i = s->m->n_tet; i < s->n_cell; i++) measure_mixed(s, i);
-}
-
-/* From the faces that are not on the boundary. */
-static double determinant_of(const struct vg_solver_sweep *s, size_t cell)
-{
-  double a[6][3], mean = 0, t[6] = { 0 };
-  int kind, n = 0;
-  const uint32_t *node = cell_of(s->m, cell, &kind);
-
-  for (int j = 0; j < vg_cell_faces[kind].n_face; j++) {
-    double x[4][3];
-    struct vg_face_shape shape;
-    int corners;
-
-    if (s->border[cell] >> j & 1) continue;
-    corners = face_corners(s->m, kind, node, j, x);
-    vg_face_shape((const double(*)[3])x, corners, &shape);
-    memcpy(a[n++], shape.area, sizeof shape.area);
-    mean += vg_norm(shape.area);
-  }
-  if (!(mean > 0)) return 0;
-  mean /= n;
-  for (int i = 0; i < n; i++) {
-    const double x = a[i][0] / mean, y = a[i][1] / mean, z = a[i][2] / mean;
-
-    t[0] += x * x;
-    t[1] += x * y;
-    t[2] += x * z;
-    t[3] += y * y;
-    t[4] += y * z;
-    t[5] += z * z;
-  }
-  return fabs(t[0] * (t[3] * t[5] - t[4] * t[4]) -
-              t[1] * (t[1] * t[5] - t[4] * t[2]) +
-              t[2] * (t[1] * t[4] - t[3] * t[2])) /
-         8;
 }
 
 /* quality: signed square of the smallest cosine. */
@@ -358,35 +374,55 @@ static void end_of(const struct vg_solver_sweep *s, uint32_t cell, int j,
   else centre_of(s, cell, out->at);
 }
 
-/* The ends of the common face of two cells; returns it as a face of lo, or -1.
- */
-static int find_ends(const struct vg_solver_sweep *s, uint32_t lo, uint32_t hi,
-                     struct vg_face_end end[2])
+/* The face of a cell whose nodes are these, as a mask; -1: none. */
+static int face_of_mask(int kind, unsigned mask)
 {
-  int kind, other, j, k;
-  const uint32_t *a = cell_of(s->m, lo, &kind), *b = cell_of(s->m, hi, &other);
+  const struct vg_cell_faces *f = &vg_cell_faces[kind];
 
-  j = find_face(kind, a, b, vg_cell_faces[other].n_node);
-  k = find_face(other, b, a, vg_cell_faces[kind].n_node);
-  if (j < 0 || k < 0) return -1; /* not a valid mesh */
-  end_of(s, lo, j, &end[0]);
-  end_of(s, hi, k, &end[1]);
-  return j;
+  for (int j = 0; j < f->n_face; j++) {
+    unsigned of = 0;
+
+    for (int i = 0; i < (j < f->n_tri ? 3 : 4); i++) of |= 1u << f->node[j][i];
+    if (of == mask) return j;
+  }
+  return -1;
+}
+
+/* The common face of two cells, as one of each; 0: there is none. */
+static int find_common(const struct vg_mesh *m, uint32_t lo, uint32_t hi,
+                       int face[2])
+{
+  int kind, other;
+  const uint32_t *a = cell_of(m, lo, &kind), *b = cell_of(m, hi, &other);
+  unsigned in_a = 0, in_b = 0;
+
+  for (int i = 0; i < vg_cell_faces[kind].n_node; i++)
+    for (int k = 0; k < vg_cell_faces[other].n_node; k++) {
+      unsigned same = a[i] == b[k];
+
+      in_a |= same << i;
+      in_b |= same << k;
+    }
+  face[0] = face_of_mask(kind, in_a);
+  face[1] = face_of_mask(other, in_b);
+  return face[0] >= 0 && face[1] >= 0; /* else the mesh is not valid */
 }
 
 static void collect_mixed(struct vg_solver_sweep *s, size_t t)
 {
   struct vg_solver_batch *b = &s->batch;
   uint32_t lo = b->cell[0][t], hi = b->cell[1][t];
-  struct vg_face_end end[2];
-  int kind, j = find_ends(s, lo, hi, end);
+  int kind;
   const uint32_t *n = cell_of(s->m, lo, &kind);
   double x[4][3];
 
-  face_corners(s->m, kind, n, j, x);
+  face_corners(s->m, kind, n, b->face[0][t], x);
   for (size_t i = 0; i < 2; i++) {
-    put_point(b, i, t, end[i].at);
-    b->share[i][t] = end[i].share;
+    struct vg_face_end end;
+
+    end_of(s, b->cell[i][t], b->face[i][t], &end);
+    put_point(b, i, t, end.at);
+    b->share[i][t] = end.share;
   }
   for (size_t i = 0; i < 3; i++) put_point(b, 2 + i, t, x[i]);
   b->volume[0][t] = volume_of(s, lo);
@@ -427,7 +463,7 @@ static void count_sums(struct vg_stats *f, size_t n,
 
 /* The faces are collected together, so that the processor loads the points of
  * many at the same time. */
-static void empty_batch(struct vg_solver_sweep *s)
+void vg_solver_empty_batch(struct vg_solver_sweep *s)
 {
   struct vg_solver_batch *b = &s->batch;
   struct vg_solver_sums sums;
@@ -448,16 +484,6 @@ static void empty_batch(struct vg_solver_sweep *s)
   b->n = 0;
 }
 
-static inline void put_triangle(struct vg_solver_sweep *s, uint32_t lo,
-                                uint32_t hi)
-{
-  struct vg_solver_batch *b = &s->batch;
-
-  b->cell[0][b->n] = lo;
-  b->cell[1][b->n++] = hi;
-  if (b->n == VG_SOLVER_BATCH) empty_batch(s);
-}
-
 /* A face with these corners, which is measured at once. */
 static void measure_one(struct vg_stats *f, uint64_t cell,
                         const struct vg_face_end end[2], const double x[4][3],
@@ -475,31 +501,29 @@ static void measure_one(struct vg_stats *f, uint64_t cell,
   *cosine = g.cosine;
 }
 
-static void join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
+void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
 {
+  struct vg_solver_batch *b = &s->batch;
   struct vg_face_end end[2];
-  int kind, n, j = find_ends(s, lo, hi, end);
+  int kind, n, face[2];
   const uint32_t *a = cell_of(s->m, lo, &kind);
   double x[4][3], cosine;
 
-  if (j < 0) return;
-  if (j < vg_cell_faces[kind].n_tri) {
-    put_triangle(s, lo, hi);
+  if (!find_common(s->m, lo, hi, face)) return;
+  if (face[0] < vg_cell_faces[kind].n_tri) {
+    for (int i = 0; i < 2; i++) b->face[i][b->n] = (uint8_t)face[i];
+    b->cell[0][b->n] = lo;
+    b->cell[1][b->n] = hi;
+    if (++b->n == VG_SOLVER_BATCH) vg_solver_empty_batch(s);
     return;
   }
-  n = face_corners(s->m, kind, a, j, x);
+  end_of(s, lo, face[0], &end[0]);
+  end_of(s, hi, face[1], &end[1]);
+  n = face_corners(s->m, kind, a, face[0], x);
   count_volumes(s->f, volume_of(s, lo), volume_of(s, hi));
   measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &cosine);
   lower(s, lo, vg_signed_square(cosine));
   lower(s, hi, vg_signed_square(cosine));
-}
-
-void vg_solver_join(struct vg_solver_sweep *s, uint32_t a, uint32_t b)
-{
-  uint32_t lo = a < b ? a : b, hi = a < b ? b : a;
-
-  if (hi < s->m->n_tet) put_triangle(s, lo, hi);
-  else join_mixed(s, lo, hi);
 }
 
 void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
@@ -526,14 +550,13 @@ void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
 
 void vg_solver_finish(struct vg_solver_sweep *s, const uint8_t *n_open)
 {
-  empty_batch(s);
+  vg_solver_empty_batch(s);
   for (size_t i = 0; i < s->n_cell; i++) {
     double centre[3], q2 = (double)s->quality[i];
     const struct vg_places *list = &s->f->places[VG_WORST_QUALITY];
-    int whole = i < s->m->n_tet && !s->border[i];
 
-    count_determinant(s->f,
-                      whole ? (double)s->determinant[i] : determinant_of(s, i));
+    count_determinant(s->f, s->border[i] ? inner_determinant(s, i)
+                                         : (double)s->determinant[i]);
     if (n_open && n_open[i]) continue;
     /* The centre is needed if the cell may be one of the worst. */
     if (list->n == VG_WORST && q2 > 0 &&
