@@ -188,6 +188,15 @@ int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
  * the mean of its two triangulations. Arguments as for vg_cell_positive. */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *node);
 
+/** Quality of each cell of a valid mesh in the terms of solvers, for output:
+ * largest non-orthogonality in degrees and largest skewness of its faces, and
+ * orthogonal quality. Each is [number of cells]: tets, pyramids, prisms, hexes.
+ * Cost and memory as vg_mesh_judge. VG_ERR_MEMORY. */
+vg_status vg_mesh_solver_fields(const struct vg_mesh *m,
+                                float *non_orthogonality, float *skewness,
+                                float *orthogonal_quality,
+                                struct vg_error *err);
+
 /** Quality of each tetrahedron, for output: smallest dihedral angle in degrees
  * and radius ratio. Each is [n_tet] and may be NULL. */
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,

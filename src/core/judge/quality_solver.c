@@ -461,6 +461,15 @@ static void count_sums(struct vg_stats *f, size_t n,
   raise_to(&f->most[VG_MOST_UNEQUAL], -sums->ratio_least);
 }
 
+/* For fields of the cells. */
+static void note_cell(const struct vg_solver_sweep *s, uint32_t cell,
+                      double cosine, double skewness)
+{
+  if (!s->oblique) return;
+  if (cosine < (double)s->oblique[cell]) s->oblique[cell] = (float)cosine;
+  if (skewness > (double)s->skewed[cell]) s->skewed[cell] = (float)skewness;
+}
+
 /* The faces are collected together, so that the processor loads the points of
  * many at the same time. */
 void vg_solver_empty_batch(struct vg_solver_sweep *s)
@@ -481,24 +490,25 @@ void vg_solver_empty_batch(struct vg_solver_sweep *s)
   }
   if (is_notable(s->f, sums.cosine_least, sums.skewness_most))
     for (size_t t = 0; t < b->n; t++) note_lane(s, t);
+  for (size_t t = 0; s->oblique && t < b->n; t++)
+    for (int i = 0; i < 2; i++)
+      note_cell(s, b->cell[i][t], b->cosine[t], b->skewness[t]);
   b->n = 0;
 }
 
 /* A face with these corners, which is measured at once. */
 static void measure_one(struct vg_stats *f, uint64_t cell,
                         const struct vg_face_end end[2], const double x[4][3],
-                        int n, double *cosine)
+                        int n, struct vg_face_figures *g)
 {
   struct vg_face_shape shape;
-  struct vg_face_figures g;
 
   vg_face_shape(x, n, &shape);
-  vg_face_measure(end, x, n, &shape, &g);
+  vg_face_measure(end, x, n, &shape, g);
   f->n.n_joined++;
-  count_face(f, &g);
-  if (is_notable(f, g.cosine, g.skewness))
-    note_joint(f, cell, &g, shape.centre);
-  *cosine = g.cosine;
+  count_face(f, g);
+  if (is_notable(f, g->cosine, g->skewness))
+    note_joint(f, cell, g, shape.centre);
 }
 
 void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
@@ -507,7 +517,8 @@ void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
   struct vg_face_end end[2];
   int kind, n, face[2];
   const uint32_t *a = cell_of(s->m, lo, &kind);
-  double x[4][3], cosine;
+  struct vg_face_figures g;
+  double x[4][3];
 
   if (!find_common(s->m, lo, hi, face)) return;
   if (face[0] < vg_cell_faces[kind].n_tri) {
@@ -521,9 +532,11 @@ void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
   end_of(s, hi, face[1], &end[1]);
   n = face_corners(s->m, kind, a, face[0], x);
   count_volumes(s->f, volume_of(s, lo), volume_of(s, hi));
-  measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &cosine);
-  lower(s, lo, vg_signed_square(cosine));
-  lower(s, hi, vg_signed_square(cosine));
+  measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &g);
+  lower(s, lo, vg_signed_square(g.cosine));
+  lower(s, hi, vg_signed_square(g.cosine));
+  note_cell(s, lo, g.cosine, g.skewness);
+  note_cell(s, hi, g.cosine, g.skewness);
 }
 
 void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
@@ -543,6 +556,7 @@ void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
   skewness = vg_face_border_skewness(centre, (const double(*)[3])x, n, &shape);
   s->f->n.n_border++;
   count_skewness(s->f, skewness);
+  note_cell(s, cell, 1, skewness);
   if (vg_places_admit(&s->f->places[VG_WORST_SKEWNESS], -skewness))
     note_face(&s->f->places[VG_WORST_SKEWNESS], number_of(s, cell), -skewness,
               shape.centre);
@@ -610,7 +624,7 @@ void vg_solver_meet(struct vg_stats *f, const struct vg_solver_side *a,
 {
   const struct vg_solver_side *side[2] = { a, b };
   struct vg_face_end end[2];
-  double cosine;
+  struct vg_face_figures g;
 
   if (number_at(b->cell) < number_at(a->cell)) {
     side[0] = b;
@@ -625,9 +639,9 @@ void vg_solver_meet(struct vg_stats *f, const struct vg_solver_side *a,
     memcpy(end[i].at, at, sizeof end[i].at);
   }
   measure_one(f, number_at(side[0]->cell), end, side[0]->corner,
-              side[0]->is_triangle ? 3 : 4, &cosine);
+              side[0]->is_triangle ? 3 : 4, &g);
   for (int i = 0; i < 2; i++) {
-    float quality = vg_signed_square(cosine);
+    float quality = vg_signed_square(g.cosine);
 
     if (side[i]->quality < quality) quality = side[i]->quality;
     if (side[i]->n_open == 1) {

@@ -53,6 +53,9 @@ struct vg_solver_sweep {
   uint8_t *border;
   struct vg_cell_middle *middle; /* [n_cell - n_tet] */
   size_t room[4];                /* of these arrays */
+  /* NULL, or per cell the smallest cosine of the non-orthogonality and the
+   * largest skewness of its faces; borrowed. */
+  float *oblique, *skewed;
   struct vg_solver_batch batch;
 };
 
