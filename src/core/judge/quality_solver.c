@@ -374,18 +374,26 @@ static void end_of(const struct vg_solver_sweep *s, uint32_t cell, int j,
   else centre_of(s, cell, out->at);
 }
 
-/* The face of a cell whose nodes are these, as a mask; -1: none. */
-static int face_of_mask(int kind, unsigned mask)
+/* The face of a cell whose nodes are these, bit by bit, plus 1; 0: none. */
+static const uint8_t face_of[VG_CELL_KINDS][256] = {
+  { [0x07] = 1, [0x0b] = 2, [0x0e] = 3, [0x0d] = 4 },
+  { [0x07] = 1, [0x16] = 2, [0x1c] = 3, [0x0d] = 4, [0x1b] = 5 },
+  { [0x07] = 1, [0x38] = 2, [0x1b] = 3, [0x36] = 4, [0x2d] = 5 },
+  { [0x0f] = 1, [0xf0] = 2, [0x33] = 3, [0x66] = 4, [0xcc] = 5, [0x99] = 6 }
+};
+
+/* Nodes of a that b has too, and the other way round. */
+static inline void common(const uint32_t *a, int n_a, const uint32_t *b,
+                          int n_b, unsigned mask[2])
 {
-  const struct vg_cell_faces *f = &vg_cell_faces[kind];
+  mask[0] = mask[1] = 0;
+  for (int i = 0; i < n_a; i++)
+    for (int k = 0; k < n_b; k++) {
+      unsigned same = a[i] == b[k];
 
-  for (int j = 0; j < f->n_face; j++) {
-    unsigned of = 0;
-
-    for (int i = 0; i < (j < f->n_tri ? 3 : 4); i++) of |= 1u << f->node[j][i];
-    if (of == mask) return j;
-  }
-  return -1;
+      mask[0] |= same << i;
+      mask[1] |= same << k;
+    }
 }
 
 /* The common face of two cells, as one of each; 0: there is none. */
@@ -394,17 +402,13 @@ static int find_common(const struct vg_mesh *m, uint32_t lo, uint32_t hi,
 {
   int kind, other;
   const uint32_t *a = cell_of(m, lo, &kind), *b = cell_of(m, hi, &other);
-  unsigned in_a = 0, in_b = 0;
+  unsigned mask[2];
 
-  for (int i = 0; i < vg_cell_faces[kind].n_node; i++)
-    for (int k = 0; k < vg_cell_faces[other].n_node; k++) {
-      unsigned same = a[i] == b[k];
-
-      in_a |= same << i;
-      in_b |= same << k;
-    }
-  face[0] = face_of_mask(kind, in_a);
-  face[1] = face_of_mask(other, in_b);
+  if (kind == VG_CELL_PRI && other == VG_CELL_PRI) common(a, 6, b, 6, mask);
+  else
+    common(a, vg_cell_faces[kind].n_node, b, vg_cell_faces[other].n_node, mask);
+  face[0] = face_of[kind][mask[0]] - 1;
+  face[1] = face_of[other][mask[1]] - 1;
   return face[0] >= 0 && face[1] >= 0; /* else the mesh is not valid */
 }
 
