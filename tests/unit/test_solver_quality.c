@@ -356,6 +356,39 @@ static void tetrahedra_agree_with_the_definitions(void **state)
   vg_mesh_release(&m);
 }
 
+/* The extremes of the cells are those of the mesh. */
+static void fields_of_the_cells(void **state)
+{
+  (void)state;
+  for (int cells = 0; cells < 2; cells++) {
+    struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
+    struct vg_mesh_report r = judged(&m);
+    size_t n = m.n_tet + m.n_pyr + m.n_pri;
+    float *field[3];
+    double angle = 0, skewness = 0, quality = 1, sum = 0;
+
+    for (int k = 0; k < 3; k++) {
+      field[k] = vg_alloc(n, sizeof *field[k]);
+      shape_need(field[k]);
+    }
+    assert_int_equal(vg_mesh_solver_fields(&m, field[0], field[1], field[2],
+                                           NULL),
+                     VG_OK);
+    for (size_t i = 0; i < n; i++) {
+      angle = fmax(angle, (double)field[0][i]);
+      skewness = fmax(skewness, (double)field[1][i]);
+      quality = fmin(quality, (double)field[2][i]);
+      sum += (double)field[2][i];
+    }
+    assert_true(fabs(angle - r.solver.angle_max) < 1e-4);
+    assert_true(fabs(skewness - r.solver.skewness_max) < 1e-5);
+    assert_true(fabs(quality - r.solver.quality_min) < 1e-6);
+    assert_true(fabs(sum / (double)n - r.solver.quality_mean) < 1e-6);
+    for (int k = 0; k < 3; k++) free(field[k]);
+    vg_mesh_release(&m);
+  }
+}
+
 /* A mesh that is not valid has no such figures. */
 static void invalid_meshes_have_no_figures(void **state)
 {
@@ -379,6 +412,7 @@ int main(void)
     cmocka_unit_test(skewed_pair_of_prisms),
     cmocka_unit_test(one_regular_tetrahedron),
     cmocka_unit_test(tetrahedra_agree_with_the_definitions),
+    cmocka_unit_test(fields_of_the_cells),
     cmocka_unit_test(invalid_meshes_have_no_figures),
   };
 

@@ -5,12 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/commands/check_surface.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
+#include "io/mesh/vtu.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/input/sizes.h"
@@ -128,6 +130,29 @@ static vg_status not_valid(const struct arguments *a,
                  a->one.file, cells);
 }
 
+/* The cells with their quality in the terms of solvers. */
+static vg_status write_vtu(const struct arguments *a, const struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  static const char *const name[3] = { "non_orthogonality", "skewness",
+                                       "orthogonal_quality" };
+  size_t n = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  float *value = vg_alloc(3 * n, sizeof *value);
+  struct vg_vtu_field field[3];
+  vg_status st;
+
+  if (!value) return vg_fail_memory(err, "the quality of the cells");
+  for (size_t k = 0; k < 3; k++)
+    field[k] = (struct vg_vtu_field){ name[k], VG_VTU_CELL, VG_VTU_FLOAT32, 1,
+                                      value + k * n };
+  VG_TRY(vg_mesh_solver_fields(m, value, value + n, value + 2 * n, err));
+  st = vg_vtu_write(a->vtu, m, field, 3, err);
+  if (st >= 0 && !a->one.json) printf("  quality of the cells: %s\n", a->vtu);
+done:
+  free(value);
+  return st;
+}
+
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                             const struct vg_mesh *m,
                             const struct vg_read_info *info,
@@ -170,6 +195,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
       printf("  note: %s\n", p->notes.text[i]);
     vg_report_mesh_text(stdout, &r, 1);
   }
+  if (a->vtu && r.is_valid) VG_TRY(write_vtu(a, m, err));
   fflush(stdout);
   vg_report_mesh_limits_text(stderr, &p->asked, &r);
 done:
@@ -250,7 +276,8 @@ int vg_cmd_check(int argc, char **argv)
       VG_GROUP_COMMON },
     { "vtu", 'v', "FILE", 0,
       "Write the triangles of a surface with smallest angle, radius ratio "
-      "(2 r/R) and distance to this .vtu file",
+      "(2 r/R) and distance to this .vtu file, or the cells of a mesh with "
+      "non-orthogonality, skewness and orthogonal quality",
       VG_GROUP_COMMON },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
       VG_GROUP_COMMON },

@@ -41,7 +41,7 @@
  * of the server of slices are passed on. Reports are unchanged on failure.
  * Memory: one slice and its faces per thread; 28 bytes per unmatched face, 160
  * per side of a face between slices and 8 per point, twice that while they are
- * sent; n_point / 8; per thread, 9 bytes per tetrahedron of a slice and 37 per
+ * sent; n_point / 8; per thread, 9 bytes per tetrahedron of a slice and 41 per
  * other cell, and in a metric, 57 per point. */
 vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           uint64_t front_faces, const struct vg_sizing *sizing,

@@ -159,7 +159,7 @@ struct vg_mesh_report {
  * tetrahedra, and the report has figures in the metric. Extreme angles are
  * computed with libm and only used for reporting. Cost: O(n) memory for one
  * face table, O(n log n) time or better; in a metric, 56 bytes per point more;
- * 9 bytes per tetrahedron and 37 per other cell for the quality in the terms of
+ * 9 bytes per tetrahedron and 41 per other cell for the quality in the terms of
  * solvers.
  * VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with is_valid 0.
  */
@@ -187,6 +187,15 @@ int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
 /** Signed volume of a cell as used by the mesh check: a quadrilateral counts as
  * the mean of its two triangulations. Arguments as for vg_cell_positive. */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *node);
+
+/** Quality of each cell of a valid mesh in the terms of solvers, for output:
+ * largest non-orthogonality in degrees and largest skewness of its faces, and
+ * orthogonal quality. Each is [number of cells]: tets, pyramids, prisms, hexes.
+ * Cost and memory as vg_mesh_judge. VG_ERR_MEMORY. */
+vg_status vg_mesh_solver_fields(const struct vg_mesh *m,
+                                float *non_orthogonality, float *skewness,
+                                float *orthogonal_quality,
+                                struct vg_error *err);
 
 /** Quality of each tetrahedron, for output: smallest dihedral angle in degrees
  * and radius ratio. Each is [n_tet] and may be NULL. */

@@ -19,8 +19,7 @@ vg_status vg_solver_begin(struct vg_solver_sweep *s, const struct vg_mesh *m,
 
   assert(s && m && f);
   if (vg_reserve(&s->quality, &s->room[0], n, sizeof *s->quality) ||
-      vg_reserve(&s->determinant, &s->room[1], m->n_tet,
-                 sizeof *s->determinant) ||
+      vg_reserve(&s->determinant, &s->room[1], n, sizeof *s->determinant) ||
       vg_reserve(&s->border, &s->room[2], n, 1) ||
       vg_reserve(&s->middle, &s->room[3], n - m->n_tet, sizeof *s->middle))
     return vg_fail_memory(err, "the quality of the cells");
@@ -47,22 +46,27 @@ size_t vg_solver_bytes(const struct vg_mesh *m)
 {
   size_t mixed = m->n_pyr + m->n_pri + m->n_hex;
 
-  return (m->n_tet + mixed) * (sizeof(float) + 1) + m->n_tet * sizeof(float) +
+  return (m->n_tet + mixed) * (2 * sizeof(float) + 1) +
          mixed * sizeof(struct vg_cell_middle);
 }
 
 /* --- cells ---------------------------------------------------------------- */
 
 /* Nodes of a cell, and its kind. */
-static const uint32_t *cell_of(const struct vg_mesh *m, size_t cell, int *kind)
+static inline const uint32_t *cell_of(const struct vg_mesh *m, size_t cell,
+                                      int *kind)
 {
-  struct vg_cells c;
+  size_t at = cell - m->n_tet;
 
   *kind = VG_CELL_TET;
   if (cell < m->n_tet) return m->tet[cell];
-  do c = vg_mesh_cells(m, ++*kind);
-  while (cell >= c.first + c.n);
-  return c.node + (cell - c.first) * (size_t)vg_cell_faces[*kind].n_node;
+  *kind = VG_CELL_PYR;
+  if (at < m->n_pyr) return m->pyr[at];
+  at -= m->n_pyr;
+  *kind = VG_CELL_PRI;
+  if (at < m->n_pri) return m->pri[at];
+  *kind = VG_CELL_HEX;
+  return m->hex[at - m->n_pri];
 }
 
 /* Corners of face j; returns their number. */
@@ -113,12 +117,57 @@ static uint64_t number_of(const struct vg_solver_sweep *s, size_t cell)
   return s->first[VG_CELL_HEX] + at - m->n_pri;
 }
 
-/* Centre, volume and the cosines between A and f. */
+/* From the area vectors of n faces. */
+static double determinant_of(const double (*a)[3], int n)
+{
+  double mean = 0, t[6] = { 0 }, scale;
+
+  for (int i = 0; i < n; i++) mean += vg_norm(a[i]);
+  if (!(mean > 0)) return 0;
+  scale = n / mean;
+  for (int i = 0; i < n; i++) {
+    const double x = a[i][0] * scale, y = a[i][1] * scale, z = a[i][2] * scale;
+
+    t[0] += x * x;
+    t[1] += x * y;
+    t[2] += x * z;
+    t[3] += y * y;
+    t[4] += y * z;
+    t[5] += z * z;
+  }
+  return fabs(t[0] * (t[3] * t[5] - t[4] * t[4]) -
+              t[1] * (t[1] * t[5] - t[4] * t[2]) +
+              t[2] * (t[1] * t[4] - t[3] * t[2])) /
+         8;
+}
+
+/* From the faces of a cell that are not on the boundary. */
+static double inner_determinant(const struct vg_solver_sweep *s, size_t cell)
+{
+  double a[6][3];
+  int kind, n = 0;
+  const uint32_t *node = cell_of(s->m, cell, &kind);
+
+  for (int j = 0; j < vg_cell_faces[kind].n_face; j++) {
+    double x[4][3];
+    struct vg_face_shape shape;
+    int corners;
+
+    if (s->border[cell] >> j & 1) continue;
+    corners = face_corners(s->m, kind, node, j, x);
+    vg_face_shape((const double(*)[3])x, corners, &shape);
+    memcpy(a[n++], shape.area, sizeof shape.area);
+  }
+  return determinant_of((const double(*)[3])a, n);
+}
+
+/* Centre, volume, determinant and the cosines between A and f. */
 static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 {
   struct vg_cell_middle *middle = &s->middle[cell - s->m->n_tet];
   struct vg_face_shape shape[6];
   double mean[3] = { 0, 0, 0 }, sum[3] = { 0, 0, 0 }, total = 0, least = 1;
+  double area[6][3];
   int kind;
   const uint32_t *node = cell_of(s->m, cell, &kind);
   int n_face = vg_cell_faces[kind].n_face;
@@ -128,8 +177,11 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
     int n = face_corners(s->m, kind, node, j, x);
 
     vg_face_shape((const double(*)[3])x, n, &shape[j]);
+    memcpy(area[j], shape[j].area, sizeof area[j]);
     for (int k = 0; k < 3; k++) mean[k] += shape[j].centre[k] / n_face;
   }
+  s->determinant[cell] = (float)determinant_of((const double(*)[3])area,
+                                               n_face);
   for (int j = 0; j < n_face; j++) {
     const double *c = shape[j].centre;
     double d[3], part;
@@ -157,42 +209,6 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 void vg_solver_measure_mixed(struct vg_solver_sweep *s)
 {
   for (size_t i = s->m->n_tet; i < s->n_cell; i++) measure_mixed(s, i);
-}
-
-/* From the faces that are not on the boundary. */
-static double determinant_of(const struct vg_solver_sweep *s, size_t cell)
-{
-  double a[6][3], mean = 0, t[6] = { 0 };
-  int kind, n = 0;
-  const uint32_t *node = cell_of(s->m, cell, &kind);
-
-  for (int j = 0; j < vg_cell_faces[kind].n_face; j++) {
-    double x[4][3];
-    struct vg_face_shape shape;
-    int corners;
-
-    if (s->border[cell] >> j & 1) continue;
-    corners = face_corners(s->m, kind, node, j, x);
-    vg_face_shape((const double(*)[3])x, corners, &shape);
-    memcpy(a[n++], shape.area, sizeof shape.area);
-    mean += vg_norm(shape.area);
-  }
-  if (!(mean > 0)) return 0;
-  mean /= n;
-  for (int i = 0; i < n; i++) {
-    const double x = a[i][0] / mean, y = a[i][1] / mean, z = a[i][2] / mean;
-
-    t[0] += x * x;
-    t[1] += x * y;
-    t[2] += x * z;
-    t[3] += y * y;
-    t[4] += y * z;
-    t[5] += z * z;
-  }
-  return fabs(t[0] * (t[3] * t[5] - t[4] * t[4]) -
-              t[1] * (t[1] * t[5] - t[4] * t[2]) +
-              t[2] * (t[1] * t[4] - t[3] * t[2])) /
-         8;
 }
 
 /* quality: signed square of the smallest cosine. */
@@ -358,35 +374,59 @@ static void end_of(const struct vg_solver_sweep *s, uint32_t cell, int j,
   else centre_of(s, cell, out->at);
 }
 
-/* The ends of the common face of two cells; returns it as a face of lo, or -1.
- */
-static int find_ends(const struct vg_solver_sweep *s, uint32_t lo, uint32_t hi,
-                     struct vg_face_end end[2])
-{
-  int kind, other, j, k;
-  const uint32_t *a = cell_of(s->m, lo, &kind), *b = cell_of(s->m, hi, &other);
+/* The face of a cell whose nodes are these, bit by bit, plus 1; 0: none. */
+static const uint8_t face_of[VG_CELL_KINDS][256] = {
+  { [0x07] = 1, [0x0b] = 2, [0x0e] = 3, [0x0d] = 4 },
+  { [0x07] = 1, [0x16] = 2, [0x1c] = 3, [0x0d] = 4, [0x1b] = 5 },
+  { [0x07] = 1, [0x38] = 2, [0x1b] = 3, [0x36] = 4, [0x2d] = 5 },
+  { [0x0f] = 1, [0xf0] = 2, [0x33] = 3, [0x66] = 4, [0xcc] = 5, [0x99] = 6 }
+};
 
-  j = find_face(kind, a, b, vg_cell_faces[other].n_node);
-  k = find_face(other, b, a, vg_cell_faces[kind].n_node);
-  if (j < 0 || k < 0) return -1; /* not a valid mesh */
-  end_of(s, lo, j, &end[0]);
-  end_of(s, hi, k, &end[1]);
-  return j;
+/* Nodes of a that b has too, and the other way round. */
+static inline void common(const uint32_t *a, int n_a, const uint32_t *b,
+                          int n_b, unsigned mask[2])
+{
+  mask[0] = mask[1] = 0;
+  for (int i = 0; i < n_a; i++)
+    for (int k = 0; k < n_b; k++) {
+      unsigned same = a[i] == b[k];
+
+      mask[0] |= same << i;
+      mask[1] |= same << k;
+    }
+}
+
+/* The common face of two cells, as one of each; 0: there is none. */
+static int find_common(const struct vg_mesh *m, uint32_t lo, uint32_t hi,
+                       int face[2])
+{
+  int kind, other;
+  const uint32_t *a = cell_of(m, lo, &kind), *b = cell_of(m, hi, &other);
+  unsigned mask[2];
+
+  if (kind == VG_CELL_PRI && other == VG_CELL_PRI) common(a, 6, b, 6, mask);
+  else
+    common(a, vg_cell_faces[kind].n_node, b, vg_cell_faces[other].n_node, mask);
+  face[0] = face_of[kind][mask[0]] - 1;
+  face[1] = face_of[other][mask[1]] - 1;
+  return face[0] >= 0 && face[1] >= 0; /* else the mesh is not valid */
 }
 
 static void collect_mixed(struct vg_solver_sweep *s, size_t t)
 {
   struct vg_solver_batch *b = &s->batch;
   uint32_t lo = b->cell[0][t], hi = b->cell[1][t];
-  struct vg_face_end end[2];
-  int kind, j = find_ends(s, lo, hi, end);
+  int kind;
   const uint32_t *n = cell_of(s->m, lo, &kind);
   double x[4][3];
 
-  face_corners(s->m, kind, n, j, x);
+  face_corners(s->m, kind, n, b->face[0][t], x);
   for (size_t i = 0; i < 2; i++) {
-    put_point(b, i, t, end[i].at);
-    b->share[i][t] = end[i].share;
+    struct vg_face_end end;
+
+    end_of(s, b->cell[i][t], b->face[i][t], &end);
+    put_point(b, i, t, end.at);
+    b->share[i][t] = end.share;
   }
   for (size_t i = 0; i < 3; i++) put_point(b, 2 + i, t, x[i]);
   b->volume[0][t] = volume_of(s, lo);
@@ -425,9 +465,18 @@ static void count_sums(struct vg_stats *f, size_t n,
   raise_to(&f->most[VG_MOST_UNEQUAL], -sums->ratio_least);
 }
 
+/* For fields of the cells. */
+static void note_cell(const struct vg_solver_sweep *s, uint32_t cell,
+                      double cosine, double skewness)
+{
+  if (!s->oblique) return;
+  if (cosine < (double)s->oblique[cell]) s->oblique[cell] = (float)cosine;
+  if (skewness > (double)s->skewed[cell]) s->skewed[cell] = (float)skewness;
+}
+
 /* The faces are collected together, so that the processor loads the points of
  * many at the same time. */
-static void empty_batch(struct vg_solver_sweep *s)
+void vg_solver_empty_batch(struct vg_solver_sweep *s)
 {
   struct vg_solver_batch *b = &s->batch;
   struct vg_solver_sums sums;
@@ -445,61 +494,53 @@ static void empty_batch(struct vg_solver_sweep *s)
   }
   if (is_notable(s->f, sums.cosine_least, sums.skewness_most))
     for (size_t t = 0; t < b->n; t++) note_lane(s, t);
+  for (size_t t = 0; s->oblique && t < b->n; t++)
+    for (int i = 0; i < 2; i++)
+      note_cell(s, b->cell[i][t], b->cosine[t], b->skewness[t]);
   b->n = 0;
-}
-
-static inline void put_triangle(struct vg_solver_sweep *s, uint32_t lo,
-                                uint32_t hi)
-{
-  struct vg_solver_batch *b = &s->batch;
-
-  b->cell[0][b->n] = lo;
-  b->cell[1][b->n++] = hi;
-  if (b->n == VG_SOLVER_BATCH) empty_batch(s);
 }
 
 /* A face with these corners, which is measured at once. */
 static void measure_one(struct vg_stats *f, uint64_t cell,
                         const struct vg_face_end end[2], const double x[4][3],
-                        int n, double *cosine)
+                        int n, struct vg_face_figures *g)
 {
   struct vg_face_shape shape;
-  struct vg_face_figures g;
 
   vg_face_shape(x, n, &shape);
-  vg_face_measure(end, x, n, &shape, &g);
+  vg_face_measure(end, x, n, &shape, g);
   f->n.n_joined++;
-  count_face(f, &g);
-  if (is_notable(f, g.cosine, g.skewness))
-    note_joint(f, cell, &g, shape.centre);
-  *cosine = g.cosine;
+  count_face(f, g);
+  if (is_notable(f, g->cosine, g->skewness))
+    note_joint(f, cell, g, shape.centre);
 }
 
-static void join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
+void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
 {
+  struct vg_solver_batch *b = &s->batch;
   struct vg_face_end end[2];
-  int kind, n, j = find_ends(s, lo, hi, end);
+  int kind, n, face[2];
   const uint32_t *a = cell_of(s->m, lo, &kind);
-  double x[4][3], cosine;
+  struct vg_face_figures g;
+  double x[4][3];
 
-  if (j < 0) return;
-  if (j < vg_cell_faces[kind].n_tri) {
-    put_triangle(s, lo, hi);
+  if (!find_common(s->m, lo, hi, face)) return;
+  if (face[0] < vg_cell_faces[kind].n_tri) {
+    for (int i = 0; i < 2; i++) b->face[i][b->n] = (uint8_t)face[i];
+    b->cell[0][b->n] = lo;
+    b->cell[1][b->n] = hi;
+    if (++b->n == VG_SOLVER_BATCH) vg_solver_empty_batch(s);
     return;
   }
-  n = face_corners(s->m, kind, a, j, x);
+  end_of(s, lo, face[0], &end[0]);
+  end_of(s, hi, face[1], &end[1]);
+  n = face_corners(s->m, kind, a, face[0], x);
   count_volumes(s->f, volume_of(s, lo), volume_of(s, hi));
-  measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &cosine);
-  lower(s, lo, vg_signed_square(cosine));
-  lower(s, hi, vg_signed_square(cosine));
-}
-
-void vg_solver_join(struct vg_solver_sweep *s, uint32_t a, uint32_t b)
-{
-  uint32_t lo = a < b ? a : b, hi = a < b ? b : a;
-
-  if (hi < s->m->n_tet) put_triangle(s, lo, hi);
-  else join_mixed(s, lo, hi);
+  measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &g);
+  lower(s, lo, vg_signed_square(g.cosine));
+  lower(s, hi, vg_signed_square(g.cosine));
+  note_cell(s, lo, g.cosine, g.skewness);
+  note_cell(s, hi, g.cosine, g.skewness);
 }
 
 void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
@@ -519,6 +560,7 @@ void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
   skewness = vg_face_border_skewness(centre, (const double(*)[3])x, n, &shape);
   s->f->n.n_border++;
   count_skewness(s->f, skewness);
+  note_cell(s, cell, 1, skewness);
   if (vg_places_admit(&s->f->places[VG_WORST_SKEWNESS], -skewness))
     note_face(&s->f->places[VG_WORST_SKEWNESS], number_of(s, cell), -skewness,
               shape.centre);
@@ -526,14 +568,13 @@ void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
 
 void vg_solver_finish(struct vg_solver_sweep *s, const uint8_t *n_open)
 {
-  empty_batch(s);
+  vg_solver_empty_batch(s);
   for (size_t i = 0; i < s->n_cell; i++) {
     double centre[3], q2 = (double)s->quality[i];
     const struct vg_places *list = &s->f->places[VG_WORST_QUALITY];
-    int whole = i < s->m->n_tet && !s->border[i];
 
-    count_determinant(s->f,
-                      whole ? (double)s->determinant[i] : determinant_of(s, i));
+    count_determinant(s->f, s->border[i] ? inner_determinant(s, i)
+                                         : (double)s->determinant[i]);
     if (n_open && n_open[i]) continue;
     /* The centre is needed if the cell may be one of the worst. */
     if (list->n == VG_WORST && q2 > 0 &&
@@ -587,7 +628,7 @@ void vg_solver_meet(struct vg_stats *f, const struct vg_solver_side *a,
 {
   const struct vg_solver_side *side[2] = { a, b };
   struct vg_face_end end[2];
-  double cosine;
+  struct vg_face_figures g;
 
   if (number_at(b->cell) < number_at(a->cell)) {
     side[0] = b;
@@ -602,9 +643,9 @@ void vg_solver_meet(struct vg_stats *f, const struct vg_solver_side *a,
     memcpy(end[i].at, at, sizeof end[i].at);
   }
   measure_one(f, number_at(side[0]->cell), end, side[0]->corner,
-              side[0]->is_triangle ? 3 : 4, &cosine);
+              side[0]->is_triangle ? 3 : 4, &g);
   for (int i = 0; i < 2; i++) {
-    float quality = vg_signed_square(cosine);
+    float quality = vg_signed_square(g.cosine);
 
     if (side[i]->quality < quality) quality = side[i]->quality;
     if (side[i]->n_open == 1) {

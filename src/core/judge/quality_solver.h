@@ -17,13 +17,14 @@
 
 #include "core/judge/quality_parts.h"
 
-#define VG_SOLVER_BATCH 128 /* triangles that are measured at once */
+#define VG_SOLVER_BATCH 64 /* triangles that are measured at once */
 
 /* Triangles between two cells: the lower cell and the other one; positions of
  * both cells and their shares, as in struct vg_face_end, and the corners. */
 struct vg_solver_batch {
   size_t n;
   uint32_t cell[2][VG_SOLVER_BATCH];
+  uint8_t face[2][VG_SOLVER_BATCH]; /* unless both are tetrahedra */
   double x[5][3][VG_SOLVER_BATCH], share[2][VG_SOLVER_BATCH];
   double cosine[VG_SOLVER_BATCH], skewness[VG_SOLVER_BATCH];
   double weight[VG_SOLVER_BATCH];
@@ -46,12 +47,15 @@ struct vg_solver_sweep {
   struct vg_stats *f;
   const float *volume; /* [n_cell] of tetrahedra */
   /* Per cell: square of the smallest cosine so far, with its sign (NAN: counted
-   * elsewhere); determinant of a tetrahedron without boundary faces; bit j:
+   * elsewhere); determinant if no face is on the boundary; bit j:
    * face j is on the boundary. */
   float *quality, *determinant;
   uint8_t *border;
   struct vg_cell_middle *middle; /* [n_cell - n_tet] */
   size_t room[4];                /* of these arrays */
+  /* NULL, or per cell the smallest cosine of the non-orthogonality and the
+   * largest skewness of its faces; borrowed. */
+  float *oblique, *skewed;
   struct vg_solver_batch batch;
 };
 
@@ -90,8 +94,28 @@ size_t vg_solver_bytes(const struct vg_mesh *m);
 /** Measure the cells that are not tetrahedra. */
 void vg_solver_measure_mixed(struct vg_solver_sweep *s);
 
+/** Measure the faces of the batch. */
+void vg_solver_empty_batch(struct vg_solver_sweep *s);
+
+/** Measure the common face of two cells, a < b, of which at least one is not a
+ * tetrahedron. */
+void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t a, uint32_t b);
+
 /** Measure the common face of two cells. */
-void vg_solver_join(struct vg_solver_sweep *s, uint32_t a, uint32_t b);
+static inline void vg_solver_join(struct vg_solver_sweep *s, uint32_t a,
+                                  uint32_t b)
+{
+  uint32_t lo = a < b ? a : b, hi = a < b ? b : a;
+  struct vg_solver_batch *to = &s->batch;
+
+  if (hi >= s->m->n_tet) {
+    vg_solver_join_mixed(s, lo, hi);
+    return;
+  }
+  to->cell[0][to->n] = lo;
+  to->cell[1][to->n] = hi;
+  if (++to->n == VG_SOLVER_BATCH) vg_solver_empty_batch(s);
+}
 
 /** Measure a boundary face of a cell; node[3] is VG_NO_NODE for a triangle. */
 void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,

@@ -104,33 +104,43 @@ VG_WITHIN void measure(const double f[3], const double g[3], const double a[3],
   out->weight = (af < ag ? af : ag) / (af + ag);
 }
 
-void vg_face_shape(const double x[4][3], int n, struct vg_face_shape *out)
+/* With the corners r_i relative to their mean m, twice the areas of the
+ * triangles around m are r_i x r_i+1, and their centres m + (r_i + r_i+1) / 3.
+ * The four triangles are the lanes of the loops. */
+static void quadrilateral(const double x[4][3], struct vg_face_shape *out)
 {
-  double mean[3], sum[3] = { 0, 0, 0 }, total = 0;
+  double r[3][5], n[3][4], area[4], total, scale;
 
-  assert(n == 3 || n == 4);
-  if (n == 3) {
-    triangle(x[0], x[1], x[2], out);
-    return;
-  }
   for (int k = 0; k < 3; k++) {
-    mean[k] = (x[0][k] + x[1][k] + x[2][k] + x[3][k]) * 0.25;
-    out->area[k] = 0;
+    double mean = ((x[0][k] + x[1][k]) + (x[2][k] + x[3][k])) * 0.25;
+
+    for (int i = 0; i < 4; i++) r[k][i] = x[i][k] - mean;
+    r[k][4] = r[k][0];
+    out->centre[k] = mean;
   }
   for (int i = 0; i < 4; i++) {
-    struct vg_face_shape part;
-    double area;
-
-    triangle(x[i], x[(i + 1) & 3], mean, &part);
-    area = sqrt(dot(part.area, part.area));
-    total += area;
-    for (int k = 0; k < 3; k++) {
-      out->area[k] += part.area[k];
-      sum[k] += area * part.centre[k];
-    }
+    n[0][i] = r[1][i] * r[2][i + 1] - r[2][i] * r[1][i + 1];
+    n[1][i] = r[2][i] * r[0][i + 1] - r[0][i] * r[2][i + 1];
+    n[2][i] = r[0][i] * r[1][i + 1] - r[1][i] * r[0][i + 1];
   }
-  for (int k = 0; k < 3; k++)
-    out->centre[k] = total > 0 ? sum[k] / total : mean[k];
+  for (int i = 0; i < 4; i++)
+    area[i] = sqrt(n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i]);
+  total = (area[0] + area[1]) + (area[2] + area[3]);
+  scale = total > 0 ? 1 / (3 * total) : 0;
+  for (int k = 0; k < 3; k++) {
+    double sum = 0;
+
+    for (int i = 0; i < 4; i++) sum += area[i] * (r[k][i] + r[k][i + 1]);
+    out->centre[k] += sum * scale;
+    out->area[k] = ((n[k][0] + n[k][1]) + (n[k][2] + n[k][3])) * 0.5;
+  }
+}
+
+void vg_face_shape(const double x[4][3], int n, struct vg_face_shape *out)
+{
+  assert(n == 3 || n == 4);
+  if (n == 3) triangle(x[0], x[1], x[2], out);
+  else quadrilateral(x, out);
 }
 
 void vg_face_measure(const struct vg_face_end end[2], const double x[4][3],

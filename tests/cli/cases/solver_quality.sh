@@ -28,6 +28,14 @@ exits 0
 says out "Non-orthogonality of each face (degrees)"
 says out "Worst orthogonal quality"
 
+# The cells as a file for ParaView.
+vanguard check -q one/box.b8.ugrid --vtu cells.vtu
+exits 0
+says out "quality of the cells: cells.vtu"
+for name in non_orthogonality skewness orthogonal_quality; do
+  grep -qa "Name=\"$name\"" cells.vtu || fail "no $name in cells.vtu"
+done
+
 # Limits that are met, and limits that are not.
 vanguard check -q one/box.b8.ugrid --max-non-orthogonality 180 \
   --max-skewness 1e6 --min-face-weight 0 --min-orthogonal-quality 0
