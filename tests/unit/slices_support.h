@@ -163,6 +163,7 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->s.n_layer_cell[VG_SLICE_TET] = info->n_layer_tet;
   c->s.n_layer_cell[VG_SLICE_PYR] = info->n_layer_pyr;
   c->s.n_layer_cell[VG_SLICE_PRI] = info->n_layer_pri;
+  c->s.n_layer_cell[VG_SLICE_HEX] = info->n_layer_hex;
 }
 
 /* Serve only the slices of this rank. */

@@ -134,6 +134,8 @@ static void join_model(const struct model *m, enum vg_layer_cells cells,
 
 /* Both expansions of one model; returns the number of their layer cells without
  * volume. */
+static size_t n_hexahedra; /* Of all models. */
+
 static size_t check_model(const struct model *m)
 {
   struct vg_mesh tets = VG_MESH_INIT, mixed = VG_MESH_INIT;
@@ -171,6 +173,7 @@ static size_t check_model(const struct model *m)
     assert_memory_equal(tets.point, mixed.point,
                         tets.n_point * sizeof *tets.point);
   n_flat = count_flat(&tets, &a) + count_flat(&mixed, &b);
+  n_hexahedra += mixed.n_hex;
   vg_mesh_release(&tets);
   vg_mesh_release(&mixed);
   return n_flat;
@@ -220,7 +223,9 @@ static void check_nothing_grown(const struct model *m)
   struct vg_join_info info;
 
   join_model(m, VG_LAYER_MIXED, 1, &mesh, &info);
-  assert_int_equal(info.n_layer_tet + info.n_layer_pyr + info.n_layer_pri, 0);
+  assert_int_equal(info.n_layer_tet + info.n_layer_pyr + info.n_layer_pri +
+                     info.n_layer_hex,
+                   0);
   assert_int_equal(info.n_layer_point, m->surface.n_point);
   assert_int_equal(mesh.n_tri, m->surface.n_tri);
   assert_memory_equal(mesh.tri, m->surface.tri, mesh.n_tri * sizeof *mesh.tri);
@@ -331,7 +336,7 @@ static void a_ridge_in_all_configurations(void **state)
         n_done += all_levels(&m, 2 + (size_t)i % 2, &n_flat);
         model_release(&m);
       }
-  assert_true(n_done > 2000);
+  assert_true(n_done > 2000 && n_hexahedra > 10);
   assert_int_equal(n_flat, 0);
 }
 

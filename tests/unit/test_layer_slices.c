@@ -333,7 +333,8 @@ static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
                        size_t n_face, double *ratio)
 {
   const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
-                                           info->n_layer_pri, info->n_layer_hex };
+                                           info->n_layer_pri,
+                                           info->n_layer_hex };
   struct side *side = vg_alloc(4 * (m->n_tet + m->n_pyr + m->n_pri + m->n_hex),
                                sizeof *side);
   size_t n = list_sides(m, n_layer, side), n_top = 0;
@@ -468,7 +469,8 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
   struct vg_join_plan plan;
   struct check c;
   const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
-                                           info->n_layer_pri, info->n_layer_hex };
+                                           info->n_layer_pri,
+                                           info->n_layer_hex };
 
   check_start(&c, whole);
   assert_int_equal(vg_join_plan_open(&plan, &m->surface, &m->layers,

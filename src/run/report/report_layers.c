@@ -248,9 +248,12 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
           vg_text_count(r->n_wall_tri, c));
   if (r->n_virtual_face)
     fprintf(to, ", %s faces in fans", vg_text_count(r->n_virtual_face, a));
-  fprintf(to, "\n  layer cells: %s tetrahedra, %s prisms, %s pyramids\n",
+  fprintf(to, "\n  layer cells: %s tetrahedra, %s prisms, %s pyramids",
           vg_text_count(j->n_layer_tet, a), vg_text_count(j->n_layer_pri, b),
           vg_text_count(j->n_layer_pyr, c));
+  if (j->n_layer_hex)
+    fprintf(to, ", %s hexahedra", vg_text_count(j->n_layer_hex, a));
+  fputc('\n', to);
   fprintf(to,
           "  rounds of height reduction until free of collisions: %zu; slide "
           "patches remeshed: %zu, %s triangles\n",
@@ -439,6 +442,7 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "tetrahedra", s->join.n_layer_tet },
     { "pyramids", s->join.n_layer_pyr },
     { "prisms", s->join.n_layer_pri },
+    { "hexahedra", s->join.n_layer_hex },
     { "tetrahedra_if_subdivided", r->n_cell },
     { "rounds", r->n_round },
     { "columns_of_many_faces", r->n_many_faces },

@@ -383,10 +383,16 @@ serve mine
 posts 303 runs "${slow[@]}" -d where=slurm -d ranks=1 -d cpus=1 \
   -d time=01:00:00 -d partition=big
 until_kept 0008
+kill -STOP -- "-$(cat job.pid)" # as above
 await 8 running 30
 says calls "--nodes 1 --ntasks-per-node 1 --cpus-per-task 1 --time=01:00:00 --partition=big vanguard.sbatch"
 says calls "PROJECT=$PWD/mine/large/box.lb8.ugrid"
 posts 303 runs/8/stop
+for _ in $(seq 300); do
+  ! grep -q scancel calls || break
+  sleep 0.1
+done
+kill -CONT -- "-$(cat job.pid)"
 await 8 stopped 30
 says calls "scancel --batch --signal=TERM 4711"
 posts 303 runs/8/resume
