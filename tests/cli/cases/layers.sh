@@ -89,7 +89,7 @@ vanguard mesh -q -p p/box --walls 5 --y-plus 1 --reynolds 5e6 \
 [[ $(grep -m1 note: out) = *"is it in the unit of the surface?"* ]] ||
   fail "no first note about the reference length"
 vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out plausible
-lacks out "unit of the surface"
+lacks out "is it in the unit of the surface"
 lacks out "same unit"
 
 # A first height above all edge lengths leaves no layer: a limit that is not
