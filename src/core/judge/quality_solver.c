@@ -396,7 +396,8 @@ static inline void common(const uint32_t *a, int n_a, const uint32_t *b,
     }
 }
 
-/* The common face of two cells, as one of each; 0: there is none. */
+/* Finds the common face of two cells: its number in each of them. Returns 0 for
+ * cells without a common face. */
 static int find_common(const struct vg_mesh *m, uint32_t lo, uint32_t hi,
                        int face[2])
 {

@@ -36,7 +36,7 @@ static uint32_t root_of(const struct vg_columns *c, uint32_t column)
 }
 
 /* Corner of a face whose root differs from the common root of the two others;
- * -1: there is none. */
+ * -1 for a face with one root or three. */
 static int single_corner(const struct vg_columns *c, const uint32_t f[3])
 {
   for (int k = 0; k < 3; k++) {
