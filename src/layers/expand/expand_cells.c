@@ -7,8 +7,9 @@
  * pyramid if two are raised, or a tetrahedron if one is. However, two columns
  * of one root are the same point at level 0, and a prism on a face with two
  * such columns would have five points and two quadrilaterals that share two
- * edges, which is not a valid cell. At level 0, columns that share their root
- * are therefore raised after the others, one at a time. Whichever points of the
+ * edges, which is not a valid cell. At level 0, columns with such faces are
+ * therefore raised after the others, one at a time, unless the faces are in
+ * pairs, which have cells of their own (pairs.h). Whichever points of the
  * face coincide, the resulting cells are tetrahedra, or cells with a repeated
  * point, which are omitted. The order depends only on the columns, so both
  * sides of a side face agree. */

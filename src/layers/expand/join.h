@@ -33,11 +33,12 @@ struct vg_join_info {
  * VG_LAYER_TETS: cells by the lift rule. VG_LAYER_MIXED: where three columns of
  * a face have the next level one prism, where two have it a pyramid, where one
  * has it a tetrahedron. The cells around a column that ends meet at its top.
- * Side faces whose two columns have the next level are quadrilaterals. An
- * exception are roots with several columns at level 0: these columns are raised
- * last, one at a time, which makes pyramids and tetrahedra, and triangles on
- * the side faces (a prism over an edge collapsed to a point is not a valid cell
- * in any format).
+ * Side faces whose two columns have the next level are quadrilaterals. Pairs of
+ * virtual faces along an edge make hexahedra, and have a point in their middle
+ * (pairs.h). At level 0, the columns of a root with virtual faces that are not
+ * in pairs are raised last, one at a time, which makes pyramids and tetrahedra,
+ * and triangles on the side faces (a prism over an edge collapsed to a point is
+ * not a valid cell in any format).
  *
  * @param field   mesh of the void within layers->front; its first points are
  *                those of the front
