@@ -14,8 +14,8 @@
 #                that each run can be repeated separately
 #   --meshcheck  another checker: PROGRAM -q MESH.b8.ugrid
 #   --keep       folder for failed runs (default: none)
-# A run succeeds if it ends with status 0 and a valid mesh, or with status 1 and
-# a message; it fails if a signal, a sanitizer or the time limit ends it. Prints
+# A run succeeds if it ends with status 0 and a valid mesh, with status 1 and a
+# message, or with status 4 because no layers grow; it fails if a signal, a sanitizer or the time limit ends it. Prints
 # a line per failed run. Exit status: 0 none failed, 1 some failed, 2 usage.
 set -uo pipefail
 export LC_ALL=C ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1
@@ -138,6 +138,9 @@ try() {   # try NAME: sets $is_bad to the reason of a failure
   elif [ $status = 1 ]; then
     grep -aq "^vanguard:\|error" "$work/log" || is_bad="no message"
     ! grep -aq "please report" "$work/log" || is_bad="a fault of its own"
+  elif [ $status = 4 ]; then
+    grep -aq "^limit not met: .* layers are requested" "$work/log" ||
+      is_bad="status 4"
   elif [ $status != 0 ]; then is_bad="status $status"
   elif ! "$vanguard" check -q "$mesh" > "$work/check" 2>&1; then
     is_bad="not valid"
