@@ -46,7 +46,7 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q)
   if (q->n_skewness)
     fputs(
       "    skewness above 4 is mostly due to sharp edges with one column per "
-      "point; fans avoid it\n    (--cells mixed --fan-angle 110)\n",
+      "point; fans avoid it\n    (--cells mixed --fan-angle 85)\n",
       to);
 }
 
