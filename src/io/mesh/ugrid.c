@@ -728,7 +728,7 @@ void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
 {
   uint64_t head = 7 * (uint64_t)kind->int_size, at;
 
-  assert(!kind->is_text && (item == 0 || (item >= 3 && item <= 5)));
+  assert(!kind->is_text && (item == 0 || (item >= 3 && item <= 6)));
   if (!item) at = 3 * (uint64_t)kind->real_size * first;
   else
     at = vg_ugrid_nodes_at(kind, count, item - 1) +

@@ -26,7 +26,7 @@ void vg_ugrid_put(struct vg_output *out, const struct vg_ugrid_kind *kind,
                   const struct vg_mesh *m, const size_t *n_layer_tet);
 
 /** Move to an element of a binary file. item: as in the header, 0 points, 3
- * tetrahedra, 4 pyramids, 5 prisms. */
+ * tetrahedra, 4 pyramids, 5 prisms, 6 hexahedra. */
 void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
                    const uint64_t count[7], int item, uint64_t first);
 
