@@ -125,6 +125,25 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
   return best;
 }
 
+/* Least total height of the patches that meet at the root of column i; 0: no
+ * limit. A limit of one patch also holds where another patch applies. */
+static double total_at(const struct vg_layer_work *w, uint32_t i)
+{
+  uint32_t first, end;
+  double least = 0;
+
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
+    const uint32_t tri = w->c->face_tri[w->t.corner[j] / 3];
+    const double total = tri == VG_NO_INDEX
+                         ? 0
+                         : w->o->patch[w->m->tri_patch[tri]].total;
+
+    if (total > 0 && !(least > 0 && least <= total)) least = total;
+  }
+  return least;
+}
+
 /* Target edge length along column i at height d. */
 static double size_along(const struct vg_layer_work *w, uint32_t i, double d)
 {
@@ -182,8 +201,10 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
     uint32_t p = patch_of(w, (uint32_t)i);
+    struct vg_layer_request r = w->o->patch[p];
     struct vg_growth_law *law;
 
+    r.total = total_at(w, (uint32_t)i);
     c->law = w->o->law_at ? (uint32_t)i : p;
     law = &w->c->law[c->law];
     if (w->o->law_at) {
@@ -192,7 +213,7 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
     }
     c->cap = law->cap;
     c->bent = SIZE_MAX;
-    c->n_wanted = (uint16_t)levels(w, (uint32_t)i, &w->o->patch[p], law);
+    c->n_wanted = (uint16_t)levels(w, (uint32_t)i, &r, law);
     w->by_size[i] = !w->o->patch[p].n_exact &&
                     c->n_wanted != w->o->patch[p].n_max;
   }
@@ -279,7 +300,10 @@ static uint8_t why_lower(const struct vg_layer_work *w, uint32_t i, uint32_t o)
   const struct vg_layer_request *a = &w->o->patch[patch_of(w, i)];
   const struct vg_layer_request *b = &w->o->patch[patch_of(w, o)];
 
-  return same_request(a, b) ? VG_CAUSE_GRADATION : VG_CAUSE_NEIGHBOUR;
+  return same_request(a, b) && !(total_at(w, i) < total_at(w, o)) &&
+             !(total_at(w, i) > total_at(w, o))
+         ? VG_CAUSE_GRADATION
+         : VG_CAUSE_NEIGHBOUR;
 }
 
 /* Height of column i with one level more than it requests. */

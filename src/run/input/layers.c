@@ -231,6 +231,13 @@ static vg_status make_request(const struct vg_settings *s,
   q->n_max = (int)(count > 0 ? count : l->most);
   if (l->most > 0 && q->n_max > l->most) q->n_max = (int)l->most;
   q->total = choose(r->total, l->total);
+  if (!l->by_source && q->total > 0 && q->law.delta1 > q->total)
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "layers: on patch %d the first height, %g, exceeds the total "
+      "height, %g: there is no room for a layer; reduce the first "
+      "height or increase the total",
+      (int)r->id, q->law.delta1, q->total);
   return set_rates(s, r, q, err);
 }
 

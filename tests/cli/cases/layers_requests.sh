@@ -70,6 +70,30 @@ run --deck same.deck --out same
 exits 0
 ! grep -q "neighbour [1-9]" out || fail "a neighbour limits equal requests"
 
+# A total height is a maximum also where another patch has thinner layers, and a
+# first height above it leaves no room.
+cat >total.deck <<'END'
+a total height between thinner layers
+growth
+1.3
+
+layers
+id      grow  first  total
+front   yes   1e-4   -
+middle  yes   1e-3   0.01
+rear    yes   1e-4   -
+END
+run --deck total.deck --out total
+exits 0
+awk '/^  Total height \(length/ { on = 1 } on && $2 == "middle" { print $5
+  exit }' out >most
+awk '{ exit !(NF == 1 && $1 > 0.004 && $1 < 0.01001) }' most ||
+  fail "the highest layers of middle are $(cat most), not 0.01 at most"
+sed 's/1e-3   0.01/2e-2   0.01/' total.deck >room.deck
+run --deck room.deck --out room
+exits 1
+says err "on patch 2 the first height, 0.02, exceeds the total height, 0.01"
+
 # Different first heights: each patch has its own, in full.
 cat >first.deck <<'END'
 different first heights
