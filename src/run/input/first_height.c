@@ -10,8 +10,8 @@
 #include "run/input/layers.h"
 
 /* L26: relative to the largest extent of the walls. On a flat plate of that
- * length, y+ 0.3 at a Reynolds number of 1e9 is 1e-8. */
-#define HEIGHT_LEAST 1e-8
+ * length, y+ 0.6 at a Reynolds number of 1e9 is 2e-8. */
+#define HEIGHT_LEAST 2e-8
 #define HEIGHT_MOST 0.02
 #define LENGTH_LEAST 0.005
 #define LENGTH_MOST 50.0
