@@ -11,7 +11,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "base/wide.h"
+#include "core/judge/lanes.h"
 
 /* Cosines of 5, 10, ... 175 degrees. */
 static const double limit[VG_HIST_ANGLE - 1] = {
@@ -31,18 +31,6 @@ static const double limit[VG_HIST_ANGLE - 1] = {
 #define N_LIMIT (VG_HIST_ANGLE - 1)
 #define N_ACUTE 18 /* limits up to 90 degrees */
 
-VG_WITHIN double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-VG_WITHIN void cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 VG_WITHIN double larger(double a, double b)
 {
   return a > b ? a : b;
@@ -59,7 +47,7 @@ VG_WITHIN double reach(const double e[3], const double x[3],
 VG_WITHIN double skewness_of(const double e[3], double c2, double far,
                              double share)
 {
-  double e2 = dot(e, e), most = larger(share * sqrt(c2 * e2), far);
+  double e2 = vg_lane_dot(e, e), most = larger(share * sqrt(c2 * e2), far);
   double ratio = e2 / most;
 
   return most > 0 ? ratio : 0;
@@ -75,7 +63,7 @@ VG_WITHIN void triangle(const double a[3], const double b[3], const double c[3],
     v[k] = c[k] - a[k];
     out->centre[k] = (a[k] + b[k] + c[k]) * (1 / 3.);
   }
-  cross(u, v, out->area);
+  vg_lane_cross(u, v, out->area);
   for (int k = 0; k < 3; k++) out->area[k] *= 0.5;
 }
 
@@ -85,11 +73,13 @@ VG_WITHIN void measure(const double f[3], const double g[3], const double a[3],
                        const struct vg_face_shape *shape,
                        struct vg_face_figures *out)
 {
-  double n[3], e[3], af = dot(shape->area, f), ag = dot(shape->area, g);
+  double n[3], e[3], af = vg_lane_dot(shape->area, f),
+                     ag = vg_lane_dot(shape->area, g);
   double s, far, cosine;
 
   for (int k = 0; k < 3; k++) n[k] = f[k] + g[k];
-  cosine = (af + ag) / sqrt(dot(shape->area, shape->area) * dot(n, n));
+  cosine = (af + ag) /
+           sqrt(vg_lane_dot(shape->area, shape->area) * vg_lane_dot(n, n));
   cosine = cosine > -1 ? cosine : -1; /* -1 for NaN */
   out->cosine = cosine < 1 ? cosine : 1;
   s = af / (af + ag);
@@ -98,7 +88,7 @@ VG_WITHIN void measure(const double f[3], const double g[3], const double a[3],
   far = larger(reach(e, a, shape->centre), reach(e, b, shape->centre));
   far = larger(far,
                larger(reach(e, c, shape->centre), reach(e, d, shape->centre)));
-  out->skewness = skewness_of(e, dot(n, n), far, 0.2);
+  out->skewness = skewness_of(e, vg_lane_dot(n, n), far, 0.2);
   af = fabs(af);
   ag = fabs(ag);
   out->weight = (af < ag ? af : ag) / (af + ag);
@@ -159,16 +149,17 @@ void vg_face_measure(const struct vg_face_end end[2], const double x[4][3],
 double vg_face_border_skewness(const double cell[3], const double x[4][3],
                                int n, const struct vg_face_shape *shape)
 {
-  double f[3], c[3], e[3], far = 0, area2 = dot(shape->area, shape->area), s;
+  double f[3], c[3], e[3], far = 0,
+                           area2 = vg_lane_dot(shape->area, shape->area), s;
 
   for (int k = 0; k < 3; k++) f[k] = shape->centre[k] - cell[k];
-  s = area2 > 0 ? dot(shape->area, f) / area2 : 0;
+  s = area2 > 0 ? vg_lane_dot(shape->area, f) / area2 : 0;
   for (int k = 0; k < 3; k++) {
     c[k] = s * shape->area[k];
     e[k] = f[k] - c[k];
   }
   for (int i = 0; i < n; i++) far = larger(far, reach(e, x[i], shape->centre));
-  return skewness_of(e, dot(c, c), far, 0.4);
+  return skewness_of(e, vg_lane_dot(c, c), far, 0.4);
 }
 
 int vg_angle_bin(double cosine)

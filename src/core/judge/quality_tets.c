@@ -9,22 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/wide.h"
+#include "core/judge/lanes.h"
 #include "core/geometry/predicates.h"
 
 #define DEGREE 57.295779513082320877
-
-VG_WITHIN double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-VG_WITHIN void cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* Arc cosine in degrees; 0 for NaN. With the rational approximation of fdlibm
  * (Sun Microsystems, 1993) for the arc sine up to 0.5, without branches, and
@@ -91,7 +79,7 @@ struct range {
  * outward unit normals a and b. */
 VG_WITHIN void extend(struct range *r, const double a[3], const double b[3])
 {
-  double c = -dot(a, b);
+  double c = -vg_lane_dot(a, b);
 
   r->high = c > r->high ? c : r->high;
   r->low = c < r->low ? c : r->low;
@@ -152,12 +140,12 @@ VG_WITHIN void measure(struct vg_tet_batch *b, size_t t)
     v[k] = b->x[2][k][t] - b->x[0][k][t];
     w[k] = b->x[3][k][t] - b->x[0][k][t];
   }
-  cross(v, w, n[1]);
-  cross(w, u, n[2]);
-  cross(u, v, n[3]);
-  uu = dot(u, u);
-  vv = dot(v, v);
-  ww = dot(w, w);
+  vg_lane_cross(v, w, n[1]);
+  vg_lane_cross(w, u, n[2]);
+  vg_lane_cross(u, v, n[3]);
+  uu = vg_lane_dot(u, u);
+  vv = vg_lane_dot(v, v);
+  ww = vg_lane_dot(w, w);
   for (int k = 0; k < 3; k++) {
     double e = v[k] - u[k], f = w[k] - u[k], g = w[k] - v[k];
 
@@ -166,8 +154,8 @@ VG_WITHIN void measure(struct vg_tet_batch *b, size_t t)
     edge2 += e * e + f * f + g * g;
   }
   edge2 += uu + vv + ww;
-  for (int i = 0; i < 4; i++) length[i] = sqrt(dot(n[i], n[i]));
-  six = dot(n[3], w);
+  for (int i = 0; i < 4; i++) length[i] = sqrt(vg_lane_dot(n[i], n[i]));
+  six = vg_lane_dot(n[3], w);
   six2 = six * six;
   area2 = length[0] + length[1] + length[2] + length[3];
   flat = !((length[0] > 0) & (length[1] > 0) & (length[2] > 0) &
@@ -177,7 +165,7 @@ VG_WITHIN void measure(struct vg_tet_batch *b, size_t t)
   b->most[t] = degrees(flat ? -1 : cosine.low);
   /* 3 (3 V / A) (12 V / |q|) with A = area2 / 2, |q| = |6 V| times twice the
    * circumradius */
-  ratio = flat ? 0 : area2 * sqrt(dot(q, q));
+  ratio = flat ? 0 : area2 * sqrt(vg_lane_dot(q, q));
   b->radius_ratio[t] = ratio > 0 ? 6 * fabs(six) * fabs(six) / ratio : ratio;
   /* (3 V)^2 = (6 V)^2 / 4 */
   mean = 12 * cube_root(six2 / 4) / edge2;

@@ -51,8 +51,8 @@
  * per cause. ROW(NAME, KEY, TEXT, RED, GREEN, BLUE): enum VG_CAUSE_NAME, name
  * in reports and files, explanation, colour in pictures. The first two are no
  * restrictions: all requested layers were grown, or they ended at the local
- * edge length, as intended. New causes are appended,
- * since numbers are part of files and of the library. */
+ * edge length, as intended. New causes are appended, since numbers are part of
+ * files and of the library. */
 #define VG_LAYER_CAUSES(ROW)                                                   \
   ROW(NONE, "none", "full layers", 176, 208, 190)                              \
   ROW(SIZE, "size", "ended at the local edge length, as intended", 176, 208,   \

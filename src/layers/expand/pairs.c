@@ -212,10 +212,11 @@ static void load(const struct vg_expand *e, const struct vg_mesh *surface,
 void vg_pair_middle(const struct vg_expand *e, const struct vg_mesh *surface,
                     size_t face, double x[3])
 {
+  const size_t other = e->partner[face];
   struct stack s;
   uint32_t q[4];
 
-  vg_pair_corners(e, face, q);
+  vg_pair_corners(e, face < other ? face : other, q);
   load(e, surface, q, &s);
   memcpy(x, s.x[MIDDLE], sizeof s.x[MIDDLE]);
 }

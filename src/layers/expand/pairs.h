@@ -43,7 +43,7 @@ void vg_pair_corners(const struct vg_expand *e, size_t face, uint32_t q[4]);
 /** Number of levels of its lower columns. */
 unsigned vg_pair_levels(const struct vg_expand *e, const uint32_t q[4]);
 
-/** Coordinates of its middle point. */
+/** Coordinates of the middle point of the pair to which a face belongs. */
 void vg_pair_middle(const struct vg_expand *e, const struct vg_mesh *surface,
                     size_t face, double x[3]);
 

@@ -188,9 +188,10 @@ static void place_points(const struct run *r, struct vg_layer_slice *at,
     for (unsigned l = 0; l < n; l++) at->id[r->base[i] + l] = e->base[c] + l;
   }
   for (size_t i = 0; i < r->n_face; i++) {
-    const uint32_t p = r->n_corner[i] == 4 ? middle_of(r, i) : VG_NO_INDEX;
+    uint32_t p;
 
-    if (p == VG_NO_INDEX) continue;
+    if (r->n_corner[i] < 4) continue;
+    p = middle_of(r, i);
     vg_pair_middle(e, surface, r->face[i], at->x[p]);
     at->id[p] = e->middle[r->face[i]];
   }

@@ -60,12 +60,8 @@ static double volume_below(const struct tops *t, size_t face)
     memcpy(x[k], column[n ? n - 1 : 0], sizeof *x);
     memcpy(x[3 + k], column[n], sizeof *x);
   }
-  if (t->p->expand.partner && t->p->expand.partner[face] != VG_NO_INDEX) {
-    const uint32_t other = t->p->expand.partner[face];
-
-    vg_pair_middle(&t->p->expand, t->p->surface, other < face ? other : face,
-                   x[6]);
-  }
+  if (t->p->expand.partner && t->p->expand.partner[face] != VG_NO_INDEX)
+    vg_pair_middle(&t->p->expand, t->p->surface, face, x[6]);
   return vg_cell_volume((const double(*)[3])x, n_node - 4, node);
 }
 
