@@ -261,6 +261,34 @@ static void keeps_imprinted_openings(void **unused)
   assert_in_range(n_tri[1], n_tri[0], 5 * n_tri[0]);
 }
 
+/* The tolerance follows the width of a patch, so that its area changes by about
+ * a percent where sizes and tolerance would permit more. */
+static void keeps_area_of_narrow_patches(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  double change[2];
+
+  (void)unused;
+  for (int keeps = 0; keeps < 2; keeps++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    double before;
+
+    shape_ball(&m, size, 24);
+    before = shape_area(&m, 0);
+    o.h_min = 0.9;
+    o.h_max = 0.9;
+    o.tolerance = 0.3;
+    o.keeps_borders = keeps;
+    remesh(&m, &o, NULL);
+    shape_expect_sound(&m, 0);
+    change[keeps] = fabs(shape_area(&m, 0) / before - 1);
+    vg_mesh_release(&m);
+  }
+  assert_true(change[0] > 0.03);
+  assert_true(change[1] < 0.02);
+}
+
 /* The sizes of a plate with two triangles per side are small at its rim only.
  * Interpolated between the corners, they would give 4 / (0.43 * 0.003 ^ 2), a
  * million triangles, on either side. */
@@ -877,6 +905,7 @@ int main(void)
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_fixed_borders),
     cmocka_unit_test(keeps_imprinted_openings),
+    cmocka_unit_test(keeps_area_of_narrow_patches),
     cmocka_unit_test(refines_large_plane_triangles),
     cmocka_unit_test(follows_strips),
     cmocka_unit_test(closes_narrow_strips),

@@ -19,7 +19,7 @@
 #include "core/surface/envelope.h"
 
 #define TOLERANCE 1e-4 /* S20: of the body's length */
-#define CHORD 0.6    /* of the tolerance: sagitta of an arc that sizes allow */
+#define FINE 0.01    /* S86: of the width of a patch: largest tolerance there */
 #define NOISE 3.0    /* S43: of the accuracy: least size from the shape alone */
 #define H_MAX 0.02   /* of the length of the body */
 #define H_MIN 2e-4   /* of the length: twice the tolerance */
@@ -199,15 +199,16 @@ static vg_status find_sizes(struct vg_remesh_job *j, struct vg_error *err)
 
   VG_TRY(vg_ref_add_tree(&j->ref, &o->stop, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_sizes_make(&j->ref, &j->curves,
-                       &(struct vg_sizes_options){
-                         o->per_turn / o->scale,
-                         CHORD * j->jag * o->scale * o->scale, o->scale,
-                         j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
-                         vg_scaled_growth(o->growth, o->scale), cap_of(j),
-                         j->point_cap ? j->point_cap : o->cap, o->across,
-                         j->given->tri_patch, o->stop },
-                       err));
+  VG_TRY(
+    vg_sizes_make(&j->ref, &j->curves,
+                  &(struct vg_sizes_options){
+                    o->per_turn / o->scale,
+                    VG_SIZES_CHORD * j->jag * o->scale * o->scale, o->scale,
+                    j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
+                    vg_scaled_growth(o->growth, o->scale), cap_of(j),
+                    j->point_cap ? j->point_cap : o->cap, o->across,
+                    j->given->tri_patch, o->stop },
+                  err));
 done:
   return st;
 }
@@ -305,6 +306,29 @@ void vg_job_release_reference(struct vg_remesh_job *j)
   j->given = j->whole;
 }
 
+/* Without limit, the area of a patch changes by the tolerance times the length
+ * of its border. */
+static vg_status limit_tolerance(struct vg_remesh_job *j, struct vg_error *err)
+{
+  const double scale = j->o->scale * fmax(j->o->scale, 1);
+  struct vg_ref *r = &j->ref;
+
+  if (!j->kept) return VG_OK;
+  r->fine = vg_alloc(r->n_tri, sizeof *r->fine);
+  r->fine_at = vg_alloc(r->n_point, sizeof *r->fine_at);
+  if (!r->fine || !r->fine_at)
+    return vg_fail_memory(err, "the borders of the patches");
+  for (size_t p = 0; p < r->n_point; p++) r->fine_at[p] = INFINITY;
+  for (size_t t = 0; t < r->n_tri; t++) {
+    const uint32_t patch = j->given->tri_patch[t];
+
+    r->fine[t] = j->kept[patch] ? FINE * scale * j->width[patch] : INFINITY;
+    for (int k = 0; k < 3; k++)
+      r->fine_at[r->tri[t][k]] = fmin(r->fine_at[r->tri[t][k]], r->fine[t]);
+  }
+  return VG_OK;
+}
+
 /* Build the reference with its feature curves and sizes. */
 vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err)
@@ -321,6 +345,7 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
 
   VG_TRY(find_lines(j, &c, err));
   if (closes) VG_TRY(close_strips(j, &c, err));
+  VG_TRY(limit_tolerance(j, err));
   VG_TRY(find_sizes(j, err));
   if (!o->field && !j->closes_edges) VG_TRY(stretch_strips(j, err));
   if (j->looks) goto done;
@@ -616,9 +641,12 @@ static vg_status keep_borders(struct vg_remesh_job *j, struct vg_error *err)
 {
   if (!j->o->keeps_borders || j->frees_borders) return VG_OK;
   j->kept = vg_calloc(j->whole->n_patch, 1);
-  if (!j->kept) return vg_fail_memory(err, "the borders of the patches");
+  j->width = vg_alloc(j->whole->n_patch, sizeof *j->width);
+  if (!j->kept || !j->width)
+    return vg_fail_memory(err, "the borders of the patches");
   /* Sizes above j->far occur on an outer boundary only. */
-  return vg_borders_keep(j->whole, j->far > 0 ? j->far : j->r.h_max, j->kept,
+  return vg_borders_keep(j->whole, j->far > 0 ? j->far : j->r.h_max,
+                         vg_cosine(j->o->feature_angle), j->kept, j->width,
                          err);
 }
 
@@ -656,6 +684,7 @@ static vg_status restart(struct vg_remesh_job *j, const struct vg_mesh *m,
   vg_job_release(j);
   j->cap = j->own_cap = j->own_stretch = NULL;
   j->kept = NULL;
+  j->width = NULL;
   j->source = NULL;
   j->keep = NULL;
   j->n_source = j->cap_source = j->n_keep = 0;
@@ -695,6 +724,7 @@ void vg_job_release(struct vg_remesh_job *j)
   free(j->own_cap);
   free(j->own_stretch);
   free(j->kept);
+  free(j->width);
   free(j->keep);
   vg_job_release_reference(j);
   vg_mesh_release(&j->base);

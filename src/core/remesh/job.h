@@ -19,6 +19,7 @@ struct vg_remesh_job {
   struct vg_remesh_options own; /* Options for `base`. */
   double *own_cap, *own_stretch;
   uint8_t *kept; /* [n_patch] Patches that keep their borders; may be NULL. */
+  double *width; /* [n_patch] Widths of the patches; NULL with `kept`. */
   struct vg_mesh base; /* Storage of `whole` once it is not the input
                           surface. */
   struct vg_remesh_report r;

@@ -360,6 +360,8 @@ void vg_ref_release(struct vg_ref *r)
   free(r->size);
   free(r->plain);
   free(r->strip);
+  free(r->fine);
+  free(r->fine_at);
   free(r->thin);
   vg_box_tree_release(&r->tree);
   memset(r, 0, sizeof *r);

@@ -56,6 +56,10 @@ struct vg_ref {
   uint8_t *strip;           /* [n_tri] VG_REF_STRIP: a strip reduces the size
                                below `plain`; VG_REF_CLOSED: near a closed
                                strip. May be NULL. */
+  double *fine;             /* [n_tri] Tolerance in narrow patches; INFINITY
+                               elsewhere. May be NULL. */
+  double *fine_at;          /* [n_point] The least of them around each point;
+                               NULL with `fine`. */
   double slope;             /* Growth - 1. */
   uint8_t *thin;            /* [n_tri] VG_REF_THIN, VG_REF_THIN_FAR: another
                                sheet is near; see vg_ref_thin. */

@@ -96,14 +96,17 @@ static double curvature(const struct bend *b)
   return (trace + (rest > 0 ? sqrt(rest) : 0)) / (2 * b->area);
 }
 
-static double arc_size(const struct vg_sizes_options *o, double curvature,
-                       int is_far)
+static double arc_size(const struct vg_ref *r, const struct vg_sizes_options *o,
+                       double curvature, int is_far, uint32_t p)
 {
+  const double chord = r->fine_at
+                       ? fmin(o->chord, VG_SIZES_CHORD * r->fine_at[p])
+                       : o->chord;
   double h;
 
   if (!(curvature > 0)) return o->h_max;
   h = 2 * M_PI / (curvature * o->per_turn);
-  return is_far ? h : fmin(h, sqrt(8 * o->chord / curvature));
+  return is_far ? h : fmin(h, sqrt(8 * chord / curvature));
 }
 
 /* Curvature of the faces from feature edge h around its start point to the next
@@ -139,11 +142,12 @@ static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
 
     add_bend(&sum[p], &bend[h / 3], 1);
     if (c->line[h])
-      r->size[p] = fmin(r->size[p], arc_size(o, sector(r, c, bend, h), far[p]));
+      r->size[p] = fmin(r->size[p],
+                        arc_size(r, o, sector(r, c, bend, h), far[p], p));
   }
   for (size_t p = 0; p < r->n_point; p++) {
     if (!(r->size[p] < INFINITY))
-      r->size[p] = arc_size(o, curvature(&sum[p]), far[p]);
+      r->size[p] = arc_size(r, o, curvature(&sum[p]), far[p], p);
     r->size[p] = fmin(r->size[p], o->h_max);
   }
   free(sum);
@@ -202,8 +206,8 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
       /* A jag smaller than the tolerance is not an arc. */
       if (angle * fmin(lu, lv) < o->chord) continue;
       r->size[c->point[k]] = fmin(r->size[c->point[k]],
-                                  arc_size(o, 2 * angle / (lu + lv),
-                                           far[c->point[k]]));
+                                  arc_size(r, o, 2 * angle / (lu + lv),
+                                           far[c->point[k]], c->point[k]));
     }
 }
 

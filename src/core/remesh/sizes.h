@@ -7,6 +7,8 @@
 #include "core/remesh/curves.h"
 #include "core/sizing/sizing.h"
 
+#define VG_SIZES_CHORD 0.6 /* of the tolerance: sagitta of an arc */
+
 struct vg_sizes_options {
   double per_turn;     /* Edges around a full circle. */
   double chord;        /* Largest sagitta of an edge over its arc. */

@@ -354,6 +354,16 @@ double vg_tris_tolerance(const struct vg_tris *w, double size)
   return fmin(w->tolerance, w->relative * size);
 }
 
+/* Tolerance that the patches at p permit. */
+static double fine_at(const struct vg_ref *r, const struct vg_tris_point *p)
+{
+  const uint32_t *q = r->tri[p->home];
+
+  if (!r->fine) return INFINITY;
+  if (p->kind == VG_WORK_FACE) return r->fine[p->home];
+  return fmin(r->fine_at[q[0]], fmin(r->fine_at[q[1]], r->fine_at[q[2]]));
+}
+
 void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
 {
   assert(p->asked.size > 0);
@@ -371,7 +381,7 @@ void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
     size = fmax(size,
                 fmin(r->plain[q[0]], fmin(r->plain[q[1]], r->plain[q[2]])));
   }
-  p->room = vg_tris_tolerance(w, size);
+  p->room = fmin(vg_tris_tolerance(w, size), fine_at(r, p));
 }
 
 /* --- cavities ------------------------------------------------------------- */

@@ -18,16 +18,18 @@
  *
  *        wide patch             patch of width w < h        many strips of a
  *     .--------------.         .----------------.           surface of
- *     |              |         |________________|           revolution: free
- *     |    kept      |           kept, triangles             below NARROW h
- *     '--------------'           of size w
+ *     |              |         |________________|           revolution: only
+ *     |    kept      |           kept, triangles            those with few
+ *     '--------------'           of size w                  edges are kept
  *
- * @param size  largest edge h of the remeshed surface
- * @param kept  [n_patch] set to 1 for patches that keep their borders; other
- *              entries remain unchanged
+ * @param size    largest edge h of the remeshed surface
+ * @param cosine  least cosine between the normals of a smooth surface
+ * @param kept    [n_patch] set to 1 for patches that keep their borders; other
+ *                entries remain unchanged
+ * @param width   [n_patch] out: width of each patch; INFINITY without a border
  *
  * O(n_tri). VG_ERR_MEMORY. */
-vg_status vg_borders_keep(const struct vg_mesh *m, double size, uint8_t *kept,
-                          struct vg_error *err);
+vg_status vg_borders_keep(const struct vg_mesh *m, double size, double cosine,
+                          uint8_t *kept, double *width, struct vg_error *err);
 
 #endif

@@ -33,6 +33,7 @@ void vg_cad_surface_release(struct vg_cad_surface *s)
   free(s->tri_face);
   free(s->segment);
   free(s->segment_curve);
+  free(s->area);
   memset(s, 0, sizeof *s);
 }
 
@@ -276,15 +277,17 @@ static vg_status take_array(struct call *k, uint64_t n, size_t size, void *to,
   return st;
 }
 
-static vg_status take_patches(struct call *k, uint64_t n, struct vg_mesh *m,
-                              struct vg_error *err)
+static vg_status take_patches(struct call *k, uint64_t n,
+                              struct vg_cad_surface *s, struct vg_error *err)
 {
+  struct vg_mesh *m = &s->mesh;
   struct vg_cad_patch *from = NULL;
   vg_status st = take_array(k, n, sizeof *from, &from, err);
 
   if (st < 0) goto done;
   m->patch = vg_calloc(n, sizeof *m->patch);
-  if (!m->patch) {
+  s->area = vg_alloc(n, sizeof *s->area);
+  if (!m->patch || !s->area) {
     end_child(k->cad);
     st = vg_fail_memory(err, "the patches");
     goto done;
@@ -292,6 +295,7 @@ static vg_status take_patches(struct call *k, uint64_t n, struct vg_mesh *m,
   for (uint64_t i = 0; i < n; i++) {
     struct vg_patch *to = &m->patch[i];
 
+    s->area[i] = from[i].area;
     to->id = from[i].id;
     to->bc = to->bc_fun3d = to->family = VG_BC_NONE;
     memcpy(to->name, from[i].name, sizeof to->name - 1);
@@ -339,7 +343,7 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   s->n_segment = n.n_segment;
   VG_TRY(take_array(k, n.n_segment, sizeof *s->segment_curve, &s->segment_curve,
                     err));
-  VG_TRY(take_patches(k, n.n_patch, m, err));
+  VG_TRY(take_patches(k, n.n_patch, s, err));
   if (!is_sound(s)) {
     st = gone(k, err);
     goto done;

@@ -108,6 +108,8 @@ struct vg_cad_surface {
    * absolute volumes of connected shells. NAN if an edge does not have exactly
    * two faces. */
   double volume;
+  double *area;   /* [mesh.n_patch] area of each patch, integrated in the same
+                     way; NAN: not known. */
   int unit;       /* enum vg_cad_unit, of the result; FILE: not known */
   size_t n_solid; /* number of solids of the file */
 };

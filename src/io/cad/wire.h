@@ -27,7 +27,7 @@ struct vg_cad_ask {
   double tolerance, chord, angle, least;
   int32_t leave_apart; /* 1: do not unite solids; 2: and keep the walls that
                           they share */
-  int32_t with_volume; /* 1: determine is_solid and volume */
+  int32_t with_volume; /* 1: determine is_solid, volume and areas */
   int32_t solids;      /* enum vg_cad_solids */
   int32_t reserved;    /* 0 */
 };
@@ -62,6 +62,7 @@ struct vg_cad_counts {
 };
 
 struct vg_cad_patch {
+  double area; /* of its exact faces; NAN unless with_volume */
   int32_t id;
   char name[80]; /* zero-terminated */
 };

@@ -8,9 +8,11 @@
 #include <cstring>
 #include <map>
 
+#include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
@@ -221,6 +223,9 @@ private:
                                     surface */
 };
 
+/* Relative error requested from Open CASCADE for the area of a face. */
+const double area_near = 1e-4;
+
 /* Key and name of the patch of a face. */
 std::string group_of(const vg_cad_ask &ask, const Face &f)
 {
@@ -266,7 +271,11 @@ public:
     auto found = known_.emplace(ask_.patches ? name : std::to_string(f.number),
                                 next);
 
-    if (!found.second) return found.first->second;
+    if (!found.second) {
+      list_[found.first->second].area += area(f);
+      return found.first->second;
+    }
+    p.area = area(f);
     p.id = ask_.patches ? static_cast<int32_t>(next + 1)
                         : static_cast<int32_t>(f.number);
     set_name(p, name);
@@ -275,6 +284,15 @@ public:
   }
 
 private:
+  double area(const Face &f) const
+  {
+    GProp_GProps g;
+
+    if (!ask_.with_volume) return NAN;
+    BRepGProp::SurfaceProperties(f.shape, g, area_near);
+    return std::fabs(g.Mass());
+  }
+
   const vg_cad_ask &ask_;
   std::vector<vg_cad_patch> &list_;
   std::map<std::string, uint32_t> known_;

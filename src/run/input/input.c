@@ -72,6 +72,8 @@ void vg_boundary_release(struct vg_boundary *b)
   vg_remeshing_release(&b->remeshing);
   vg_cad_model_release(&b->model);
   free(b->row);
+  free(b->given_area.id);
+  free(b->given_area.area);
 }
 
 static void release_read(struct vg_read *r)

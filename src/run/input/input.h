@@ -77,6 +77,13 @@ struct vg_remeshing {
                        is not closed. */
 };
 
+/* Areas of patches by their numbers. */
+struct vg_patch_areas {
+  size_t n;
+  int32_t *id;  /* [n] owned */
+  double *area; /* [n] owned */
+};
+
 /** 1. The contents of the files of a project. Made by vg_problem_read or
  * vg_problem_given, and const afterwards except for `surface` and `model`,
  * which the boundary takes over. */
@@ -141,6 +148,7 @@ struct vg_boundary {
   struct vg_patch_row *row; /* [n_row] owned: their names, conditions and fixed
                                borders. */
   struct vg_remeshing remeshing;
+  struct vg_patch_areas given_area; /* Before the first attempt to remesh. */
   struct vg_domain_report domain;
   int is_swapped; /* Edges of the surface were swapped. */
   enum vg_remedy remedy;

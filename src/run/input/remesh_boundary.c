@@ -21,6 +21,9 @@
 #define MANY 1e-3
 /* Share of the triangles; above it most of them are slivers. */
 #define MOST 0.5
+/* Largest relative difference between the areas of a patch and its CAD faces.
+ */
+#define AREA_NEAR 0.05
 
 /* S49: tessellations after the first, as factors on its chord and angle.
  * Coarser ones come first, whose sheets do not cross at cusps, then a finer
@@ -112,6 +115,51 @@ static void areas(const struct vg_mesh *m, int after, double *area)
       m->point[m->tri[t][0]], m->point[m->tri[t][1]], m->point[m->tri[t][2]]);
 }
 
+/* Is the surface the whole CAD model, of which nothing was cut off, dropped,
+ * capped or united? */
+static int is_whole_model(const struct vg_boundary *b)
+{
+  return b->model.cad && b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
+         !b->flow.n_cavity && !b->n_given_patch && !b->is_united;
+}
+
+/* Area of patch i of the given mesh: of its CAD faces, if known. A sum over
+ * faces that overlap each other is not the area of the patch. */
+static double given_area(const struct vg_boundary *b, size_t i, double area)
+{
+  const struct vg_cad_surface *s = &b->model.surface;
+  const double exact = is_whole_model(b) && s->area && i < s->mesh.n_patch
+                       ? s->area[i]
+                       : NAN;
+
+  return fabs(exact - area) <= AREA_NEAR * area ? exact : area;
+}
+
+/* Areas of the given patches. They are those of the first attempt, since the
+ * tessellations of later attempts may be coarse. */
+static vg_status given_areas(struct vg_boundary *b, const struct vg_mesh *given,
+                             double *area, struct vg_error *err)
+{
+  struct vg_patch_areas *a = &b->given_area;
+
+  areas(given, 0, area);
+  if (!a->n) {
+    a->id = vg_alloc(given->n_patch, sizeof *a->id);
+    a->area = vg_alloc(given->n_patch, sizeof *a->area);
+    if (!a->id || !a->area) return vg_fail_memory(err, "the patches");
+    for (; a->n < given->n_patch; a->n++) {
+      a->id[a->n] = given->patch[a->n].id;
+      a->area[a->n] = given_area(b, a->n, area[2 * a->n]);
+    }
+  }
+  for (size_t i = 0; i < a->n; i++) {
+    const size_t at = vg_mesh_find_patch(given, a->id[i]);
+
+    if (at != SIZE_MAX) area[2 * at] = a->area[i];
+  }
+  return VG_OK;
+}
+
 struct remesh_request {
   const uint8_t *hard; /* [n_patch] May be NULL. */
   const struct vg_surface_sizes *sizes;
@@ -140,17 +188,14 @@ static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
   return vg_remesh(&b->surface, &o, &b->remeshing.report, err);
 }
 
-/* Volumes of the remeshed surface and of the CAD model, if both are closed and
- * nothing was dropped, capped or united. Integrated about a corner, so that
- * numbers are small wherever the body is. */
+/* Volumes of the remeshed surface and of the CAD model. Integrated about a
+ * corner, so that numbers are small wherever the body is. */
 static void take_volumes(struct vg_boundary *b)
 {
   const struct vg_mesh *m = &b->surface;
-  const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
-                       !b->flow.n_cavity && !b->n_given_patch && !b->is_united;
 
   b->remeshing.volume[0] = b->remeshing.volume[1] = NAN;
-  if (!b->model.cad || !is_whole || !m->n_tri) return;
+  if (!is_whole_model(b) || !m->n_tri) return;
   b->remeshing.volume[0] = fabs(vg_enclosed6(m->n_tri,
                                              (const uint32_t(*)[3])m->tri,
                                              (const double(*)[3])m->point,
@@ -237,10 +282,7 @@ static vg_status measure(struct vg_boundary *b, struct vg_mesh *given,
   vg_status st;
 
   r->face = vg_alloc(b->surface.n_tri, sizeof *r->face);
-  r->n_patch = b->surface.n_patch;
-  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
-  if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
-  areas(given, 0, r->area);
+  if (!r->face) return vg_fail_memory(err, "the distances");
   VG_TRY(vg_remesh_arrange(given, err));
   VG_TRY(vg_remesh_measure(&b->surface, given, b->threads, &stop, r->face,
                            r->off, err));
@@ -358,6 +400,10 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                    "patch, or set remesh_surface to no");
   vg_display_update(show, "surface remeshing", b->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
+  r->n_patch = given.n_patch;
+  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
+  if (!r->area) VG_TRY(vg_fail_memory(err, "the patches"));
+  VG_TRY(given_areas(b, &given, r->area, err));
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
   VG_TRY(vg_boundary_field(b, &sizes.field, err));
