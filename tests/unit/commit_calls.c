@@ -180,7 +180,7 @@ ssize_t __wrap_pwrite(int fd, const void *data, size_t n, off_t at)
 
 int __wrap_fsync(int fd)
 {
-  char link[64], path[PATH];
+  char link[64], path[2 * PATH], here[PATH];
   struct stat s;
   ssize_t n;
   struct op *o;
@@ -194,7 +194,8 @@ int __wrap_fsync(int fd)
   snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
   n = readlink(link, path, sizeof path - 1);
   path[n > 0 ? n : 0] = 0;
-  record(SYNC_FOLDER, path, NULL);
+  if (getcwd(here, sizeof here) && !strncmp(path, here, strlen(here)))
+    record(SYNC_FOLDER, path + strlen(here) + 1, NULL);
   return 0;
 }
 

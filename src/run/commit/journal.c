@@ -123,7 +123,7 @@ static char *slurp(const char *path, size_t *size)
   return text;
 }
 
-/* Reads one move at *at and advances it. VG_BLOCKED: there is none. */
+/* Reads one move at *at and advances it. VG_BLOCKED: it is damaged. */
 static vg_status parse_move(struct vg_journal *j, char **at, const char *end,
                             struct vg_error *err)
 {

@@ -147,10 +147,19 @@ static int is_new_folder(const struct vg_move *m, const char *path)
   return !lstat(path, &s) && s.st_ino == m->ino;
 }
 
-/* Returns 0, or -1 with errno. */
+/* Gives the old file its place in `old`, on the disk before the new one takes
+ * its name. Returns 0, or -1 with errno. */
 static int set_aside(const struct paths *p)
 {
-  return vg_path_exists(p->to) ? rename(p->to, p->old) : 0;
+  char *slash = strrchr(p->old, '/');
+  vg_status st;
+
+  if (!vg_path_exists(p->to)) return 0;
+  if (rename(p->to, p->old)) return -1;
+  *slash = 0;
+  st = vg_folder_sync(p->old, NULL);
+  *slash = '/';
+  return st < 0 ? -1 : 0;
 }
 
 static int do_file(const struct vg_move *m, const struct paths *p)
@@ -263,16 +272,15 @@ static void cut_name(char *path)
 
 vg_status vg_moves_sync(const struct vg_commit *c, struct vg_error *err)
 {
-  char *last = vg_commit_path(c->hidden, "old");
-  vg_status st = last ? vg_folder_sync(last, err)
-                      : vg_fail_memory(err, "the output paths");
+  char *last = NULL;
+  vg_status st = VG_OK;
 
   for (size_t i = 0; i < c->moves.n && st >= 0; i++) {
     char *folder = vg_commit_path(c->dir, c->moves.move[i].to);
 
     if (!folder) return free(last), vg_fail_memory(err, "the output paths");
     cut_name(folder);
-    if (strcmp(folder, last) != 0) st = vg_folder_sync(folder, err);
+    if (!last || strcmp(folder, last) != 0) st = vg_folder_sync(folder, err);
     free(last);
     last = folder;
   }
