@@ -556,7 +556,7 @@ static void subdomains_follow_their_mesh(void **state)
   assert_false(exists(in_case(dir, "constant/cellDecomposition")));
   assert_true(exists(in_case(dir, "system/decomposeParDict")));
   vg_tree_remove(dir);
-  replace_case("parted.openfoam", &m, 0); /* There is none. */
+  replace_case("parted.openfoam", &m, 0); /* A new case. */
   assert_true(exists(in_case(dir, "parted.foam")));
   assert_true(exists(in_case(dir, "system/fvSchemes")));
   vg_tree_remove(dir);

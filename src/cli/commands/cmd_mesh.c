@@ -388,7 +388,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   vg_report_layers_note(&r->layers, &p->boundary.surface, &p->notes);
   st = write_all(r, a, err);
 done:
-  return st;
+  return vg_outputs_failed(&r->outputs, st, err);
 }
 
 static int report_failure(struct run *r, const struct arguments *a,

@@ -197,7 +197,7 @@ static vg_status write_all(const struct vg_problem *p, struct files *f,
   vg_display_commit();
   st = vg_outputs_commit(&f->outputs, err);
 done:
-  return st;
+  return vg_outputs_failed(&f->outputs, st, err);
 }
 
 static void print(const struct vg_problem *p, const struct files *f)
