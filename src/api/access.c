@@ -311,8 +311,10 @@ vanguard_status vanguard_write(vanguard_job *job, const char *stem,
                  "of vanguard_mesh only");
   if (st < 0) return vg_job_status(st);
   atomic_store(&job->show.asked, 0);
-  st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
-  if (st >= 0 && !job->run.rank) vg_outputs_sweep(&o, &job->problem.notes);
+  st = plan_files(job, stem, forms, &o);
+  if (st >= 0 && !job->run.rank)
+    st = vg_outputs_claim(&o, &job->problem.notes, &job->err);
+  st = vg_comm_agree(job->comm, st, &job->err);
   if (st >= 0) {
     void *before = vg_thread_data();
 

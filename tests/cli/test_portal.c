@@ -168,8 +168,12 @@ static void progress_lines_are_parsed(void **state)
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     assert_false(vg_tell_line(other[i], strlen(other[i]), &t));
   assert_false(vg_tell_line("re\0d", 4, &t));
-  assert_true(vg_tell_tail(tail, sizeof tail - 1, &t));
+  assert_true(vg_tell_tail(tail, sizeof tail - 1, 0, &t));
   assert_string_equal(t.count, "1 of 2");
+  /* The end of "/folder/big" is no stage. */
+  assert_false(vg_tell_tail("ig\n", 3, 1, &t));
+  assert_true(vg_tell_tail("ig\nread\n", 8, 1, &t));
+  assert_string_equal(t.stage, "read");
   assert_int_equal(vg_tell_status("x\nexit status 4 after 1.2 s\n", 27), 4);
   assert_int_equal(vg_tell_status("exit status 4", 13), -1);
   assert_int_equal(vg_tell_status("\nexit status 4", 14), -1);

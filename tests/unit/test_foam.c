@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 
 #include "io/mesh/foam.h"
+#include "run/commit/commit.h"
+#include "run/commit/tree.h"
 
 /* --- a reader of the written files, independent of the writer ------------ */
 
@@ -238,12 +240,51 @@ static void write_case(const char *dir, const struct vg_mesh *m, int is_ascii)
 {
   struct vg_error err = VG_ERROR_INIT;
 
+  vg_tree_remove(dir);
   if (vg_foam_write(dir, m, as + is_ascii, &err)) fail_msg("%s", err.text);
 }
 
 static int exists(const char *path)
 {
   return !access(path, F_OK);
+}
+
+/* A mesh that replaces the one of VG_TMP_DIR/NAME. */
+struct replacing {
+  struct vg_commit commit;
+  const char *name;
+};
+
+static vg_status add_move(void *replacing, enum vg_foam_move kind,
+                          const char *path, const char *to,
+                          struct vg_error *err)
+{
+  const enum vg_move_kind kind_of[] = { VG_MOVE_FILE, VG_MOVE_FOLDER,
+                                        VG_MOVE_REMOVE };
+  struct replacing *r = replacing;
+  char name[400];
+
+  snprintf(name, sizeof name, "%s%s%s", r->name, *path ? "/" : "", path);
+  return vg_commit_add(&r->commit, kind_of[kind],
+                       kind == VG_FOAM_REMOVE ? "" : name, to ? to : name, err);
+}
+
+static void replace_case(const char *name, const struct vg_mesh *m,
+                         int is_ascii)
+{
+  struct replacing r = { .name = name };
+  const struct vg_foam_mover mover = { add_move, &r };
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_commit_open(VG_TMP_DIR, name, NULL, NULL, &r.commit,
+                                  &err),
+                   VG_OK);
+  write_case(in_case(r.commit.fresh, name), m, is_ascii);
+  if (vg_foam_merge(in_case(r.commit.fresh, name), io_temp(name), &mover,
+                    &err) ||
+      vg_commit_run(&r.commit, &err))
+    fail_msg("%s", err.text);
+  vg_commit_close(&r.commit);
 }
 
 /* --- tests --- */
@@ -286,7 +327,7 @@ static void two_tetrahedra_as_documented(void **state)
   assert_int_equal(patch_value(&f, "patch_2", "nFaces"), 5);
   closed_and_positive(&f, 0.5);
   unload(&f);
-  vg_foam_remove(dir);
+  vg_tree_remove(dir);
   assert_false(exists(dir));
   vg_mesh_release(&m);
 }
@@ -329,7 +370,7 @@ static void all_kinds_of_cells(void **state)
                       f.n_inner * sizeof *f.neighbour);
   unload(&f);
   unload(&text);
-  vg_foam_remove(dir);
+  vg_tree_remove(dir);
   vg_mesh_release(&m);
 }
 
@@ -359,7 +400,7 @@ static void cells_in_any_order(void **state)
   upper_triangular(&f);
   closed_and_positive(&f, mixed_volume(12, 10));
   unload(&f);
-  vg_foam_remove(dir);
+  vg_tree_remove(dir);
   vg_mesh_release(&m);
 }
 
@@ -400,7 +441,7 @@ static void names_and_types(void **state)
   assert_true(patch_is(&f, "roof", "symmetryPlane", "symmetry"));
   assert_true(patch_is(&f, "wing_upper_lower__x__22", "patch", ""));
   unload(&f);
-  vg_foam_remove(dir);
+  vg_tree_remove(dir);
   vg_mesh_release(&m);
 }
 
@@ -481,58 +522,44 @@ static void a_case_is_remeshed_in_place(void **state)
   for (int i = 0; i < 3; i++) io_write_file(in_case(dir, stale[i]), "old", 3);
   for (int i = 0; i < 4; i++) io_write_file(in_case(dir, kept[i]), "mine", 4);
   for (int turn = 0; turn < 2; turn++) {
-    if (turn == 0) {
-      write_case(dir, &many, 0);
-    } else {
-      const char *aside = io_temp("aside/again.openfoam");
-
-      mkdir(io_temp("aside"), 0777);
-      write_case(aside, &one, 1);
-      if (vg_foam_place(aside, dir, &err)) fail_msg("%s", err.text);
-      assert_false(exists(aside));
-      assert_int_equal(rmdir(io_temp("aside")), 0);
-    }
+    replace_case("again.openfoam", turn ? &one : &many, turn);
     load(dir, turn, &f);
     assert_int_equal(f.n_cell, turn ? 1 : mixed_n_cell(&many));
     unload(&f);
     for (int i = 0; i < 3; i++) assert_false(exists(in_case(dir, stale[i])));
-    assert_false(exists(in_case(dir, "constant/polyMesh.part")));
     for (int i = 0; i < 4; i++) {
       data = io_slurp(in_case(dir, kept[i]), &size);
       assert_string_equal((char *)data, "mine");
       free(data);
     }
   }
-  for (int i = 0; i < 4; i++) unlink(in_case(dir, kept[i]));
-  rmdir(in_case(dir, "0"));
-  vg_foam_remove(dir);
-  assert_false(exists(dir));
+  vg_tree_remove(dir);
+  assert_int_equal(vg_foam_write(dir, &one, NULL, &err), VG_OK);
+  assert_int_equal(vg_foam_write(dir, &one, NULL, &err), VG_ERR_IO);
+  vg_tree_remove(dir);
   vg_mesh_release(&one);
   vg_mesh_release(&many);
 }
 
-/* Placing into an empty folder makes the whole case. */
-static void a_foam_case_is_moved_to_its_place(void **state)
+/* The subdomains of an earlier mesh are removed, or replaced. */
+static void subdomains_follow_their_mesh(void **state)
 {
-  const char *from = io_temp("from.openfoam"), *to = io_temp("to.openfoam");
-  struct vg_error err = VG_ERROR_INIT;
+  const uint32_t part[1] = { 0 };
+  const char *dir = io_temp("parted.openfoam");
   struct vg_mesh m;
-  struct foam f;
 
   (void)state;
   io_make_t1(&m, 1);
-  write_case(from, &m, 0);
-  if (vg_foam_place(from, to, &err)) fail_msg("%s", err.text);
-  assert_false(exists(from));
-  assert_true(exists(in_case(to, "to.foam")));
-  assert_true(exists(in_case(to, "system/fvSchemes")));
-  load(to, 0, &f);
-  assert_int_equal(f.n_cell, 1);
-  unload(&f);
-  vg_foam_remove(to);
-  assert_false(exists(to));
-  assert_int_equal(vg_foam_place(from, to, &err), VG_ERR_IO);
-  vg_foam_remove(to);
+  write_case(dir, &m, 0);
+  assert_int_equal(vg_foam_write_parts(dir, 1, part, 1, NULL), VG_OK);
+  replace_case("parted.openfoam", &m, 0);
+  assert_false(exists(in_case(dir, "constant/cellDecomposition")));
+  assert_true(exists(in_case(dir, "system/decomposeParDict")));
+  vg_tree_remove(dir);
+  replace_case("parted.openfoam", &m, 0); /* A new case. */
+  assert_true(exists(in_case(dir, "parted.foam")));
+  assert_true(exists(in_case(dir, "system/fvSchemes")));
+  vg_tree_remove(dir);
   vg_mesh_release(&m);
 }
 
@@ -549,23 +576,15 @@ static void a_linked_mesh_stays_linked(void **state)
   write_case(dir, &m, 0);
   assert_int_equal(rename(in_case(dir, "constant/polyMesh"), mesh), 0);
   assert_int_equal(symlink(mesh, in_case(dir, "constant/polyMesh")), 0);
-  write_case(dir, &m, 1);
+  replace_case("linked.openfoam", &m, 1);
   load(dir, 1, &f);
   assert_int_equal(f.n_cell, 1);
   unload(&f);
   assert_int_equal(lstat(in_case(dir, "constant/polyMesh"), &s), 0);
   assert_true(S_ISLNK(s.st_mode));
-  assert_false(exists(in_case(dir, "constant/polyMesh.part")));
-  unlink(in_case(dir, "constant/polyMesh"));
-  vg_foam_remove(dir);
-  assert_false(exists(dir));
-  for (int i = 0; i < 5; i++) {
-    static const char *const file[5] = { "points", "faces", "owner",
-                                         "neighbour", "boundary" };
-
-    assert_int_equal(unlink(in_case(mesh, file[i])), 0);
-  }
-  assert_int_equal(rmdir(mesh), 0);
+  vg_tree_remove(dir);
+  assert_true(exists(in_case(mesh, "boundary")));
+  vg_tree_remove(mesh);
   vg_mesh_release(&m);
 }
 
@@ -608,7 +627,7 @@ static void a_point_of_many_cells(void **state)
   assert_int_equal(f.n_inner, n);
   upper_triangular(&f);
   unload(&f);
-  vg_foam_remove(dir);
+  vg_tree_remove(dir);
   vg_mesh_release(&m);
 }
 
@@ -635,7 +654,7 @@ int main(void)
     cmocka_unit_test(open_meshes_are_refused),
     cmocka_unit_test(unwritable_paths_are_reported),
     cmocka_unit_test(a_case_is_remeshed_in_place),
-    cmocka_unit_test(a_foam_case_is_moved_to_its_place),
+    cmocka_unit_test(subdomains_follow_their_mesh),
     cmocka_unit_test(a_linked_mesh_stays_linked),
     cmocka_unit_test(a_point_of_many_cells),
     cmocka_unit_test(format_words),

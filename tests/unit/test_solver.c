@@ -6,6 +6,7 @@
 #include "base/bytes.h"
 #include "fill_support.h"
 #include "io/mesh/foam.h"
+#include "run/commit/tree.h"
 #include "io/mesh/format.h"
 #include "io/stream/metis_part.h"
 #include "io/mesh/ugrid.h"
@@ -477,7 +478,7 @@ static void writes_parts_for_openfoam(void **state)
   text = io_slurp(path, &n);
   assert_non_null(strstr((char *)text, "numberOfSubdomains 2;"));
   free(text);
-  vg_foam_remove(folder);
+  vg_tree_remove(folder);
   assert_int_equal(access(folder, F_OK), -1);
   vg_mesh_release(&m);
 }

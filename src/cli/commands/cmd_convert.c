@@ -22,6 +22,7 @@
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
+#include "run/stages/output.h"
 
 /* First line of a .mapbc of this command, which may be overwritten. */
 #define TITLE "converted by Vanguard"
@@ -77,6 +78,7 @@ struct conversion {
   size_t n_cell, n_layer; /* n_layer: layer tetrahedra; 0: none, or unknown */
   char *file, *mapbc;     /* files written; mapbc: NULL without one */
   const char *suffix;     /* of the format written */
+  struct vg_outputs outputs;
   struct vg_foam_options foam;
   int what; /* stored in it */
   struct vg_notes notes;
@@ -282,6 +284,7 @@ static vg_status write_mapbc(struct conversion *c, struct vg_error *err)
   size_t n = strlen(c->file), n_stem = n - strlen(c->suffix) - 1, n_unset = 0;
   const struct vg_mesh m = c->slices ? vg_ugrid_slices_boundary(c->slices)
                                      : c->mesh;
+  char *path;
   vg_status st;
 
   if (!(c->what & IDS) || c->what & CODES || !count_codes(&c->mesh))
@@ -299,7 +302,12 @@ static vg_status write_mapbc(struct conversion *c, struct vg_error *err)
     c->mapbc = NULL;
     return VG_OK;
   }
-  st = vg_mapbc_write(c->mapbc, &m, VG_MAPBC_VGRID, TITLE, &n_unset, err);
+  path = vg_outputs_temp_path(&c->outputs, "mapbc");
+  st = path ? vg_outputs_add(&c->outputs, "mapbc", err)
+            : vg_fail_memory(err, "a file name");
+  if (st >= 0)
+    st = vg_mapbc_write(path, &m, VG_MAPBC_VGRID, TITLE, &n_unset, err);
+  free(path);
   if (st >= 0 && n_unset)
     vg_note(&c->notes,
             "%zu patches without a condition are inviscid walls (5) in %s",
@@ -397,11 +405,18 @@ done:
   return st;
 }
 
-static vg_status write_slices(struct conversion *c, struct vg_error *err)
+/* The suffix of the file, in the letters of its name. */
+static const char *own_suffix(const struct conversion *c)
+{
+  return c->file + strlen(c->file) - strlen(c->suffix);
+}
+
+static vg_status write_slices(struct conversion *c, const char *path,
+                              struct vg_error *err)
 {
   const struct vg_slices_options o = { .plain = 1, .tail = c->n_layer > 0 };
-  const size_t n_stem = strlen(c->file) - strlen(c->suffix) - 1;
-  char *stem = strndup(c->file, n_stem);
+  const size_t n_stem = strlen(path) - strlen(c->suffix) - 1;
+  char *stem = strndup(path, n_stem);
   vg_status st;
 
   if (!stem) return vg_fail_memory(err, "a file name");
@@ -411,16 +426,59 @@ static vg_status write_slices(struct conversion *c, struct vg_error *err)
   return st;
 }
 
-static vg_status write_output(struct conversion *c, struct vg_error *err)
+static vg_status write_mesh(struct conversion *c, const char *path,
+                            struct vg_error *err)
 {
   struct vg_ugrid_kind kind;
 
-  if (c->slices) return write_slices(c, err);
+  if (c->slices) return write_slices(c, path, err);
   if (!strcmp(c->suffix, VG_FOAM_SUFFIX))
-    return vg_foam_write(c->file, &c->mesh, &c->foam, err);
+    return vg_foam_write(path, &c->mesh, &c->foam, err);
   if (c->n_layer && vg_ugrid_kind(c->suffix, &kind) && !kind.is_text)
-    return vg_ugrid_write_tail(c->file, &c->mesh, c->n_layer, err);
-  return vg_format_write(c->file, &c->mesh, err);
+    return vg_ugrid_write_tail(path, &c->mesh, c->n_layer, err);
+  return vg_format_write(path, &c->mesh, err);
+}
+
+/* The files that the writer of .cogsg or .vtu adds to the first one. */
+static vg_status add_companions(struct conversion *c, struct vg_error *err)
+{
+  static const char *const known[] = { "bc", "mapbc", "surface.vtu" };
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < sizeof known / sizeof *known && st >= 0; i++) {
+    char *path = vg_outputs_temp_path(&c->outputs, known[i]);
+
+    if (!path) st = vg_fail_memory(err, "a file name");
+    else if (!access(path, F_OK))
+      st = vg_outputs_add(&c->outputs, known[i], err);
+    free(path);
+  }
+  return st;
+}
+
+static vg_status write_output(struct conversion *c, struct vg_error *err)
+{
+  char *path = vg_outputs_temp_path(&c->outputs, own_suffix(c));
+  vg_status st = path ? vg_outputs_add(&c->outputs, own_suffix(c), err)
+                      : vg_fail_memory(err, "a file name");
+
+  if (st >= 0) {
+    c->outputs.file[0].is_case = !strcmp(c->suffix, VG_FOAM_SUFFIX);
+    st = write_mesh(c, path, err);
+  }
+  free(path);
+  return st < 0 ? st : add_companions(c, err);
+}
+
+/* The folder and the stem of the file, whose names are locked. */
+static vg_status claim(struct conversion *c, struct vg_error *err)
+{
+  char *stem = strndup(c->file, strlen(c->file) - strlen(c->suffix) - 1);
+  vg_status st = stem ? vg_outputs_place(stem, NULL, &c->outputs, err)
+                      : vg_fail_memory(err, "a file name");
+
+  free(stem);
+  return st < 0 ? st : vg_outputs_claim(&c->outputs, &c->notes, err);
 }
 
 static vg_status convert(struct conversion *c, struct vg_display *show,
@@ -429,14 +487,18 @@ static vg_status convert(struct conversion *c, struct vg_display *show,
   vg_status st;
 
   VG_TRY(choose(c, err));
+  VG_TRY(claim(c, err));
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_input(c, err));
   vg_display_update(show, "write", c->n_cell, 0);
-  VG_TRY(write_output(c, err));
+  VG_TRY(vg_outputs_begin(&c->outputs, NULL, err));
+  VG_TRY(vg_outputs_failed(&c->outputs, write_output(c, err), err));
   check_ids(c);
-  st = write_mapbc(c, err);
-  if (st < 0) unlink(c->file);
-  else note_mesh(c);
+  VG_TRY(vg_outputs_failed(&c->outputs, write_mapbc(c, err), err));
+  VG_TRY(vg_display_stopped(show, err));
+  vg_display_commit();
+  VG_TRY(vg_outputs_commit(&c->outputs, err));
+  note_mesh(c);
 done:
   return st;
 }
@@ -536,7 +598,7 @@ int vg_cmd_convert(int argc, char **argv)
 
   vg_cli_parse(&argp, argc, argv, &a);
   vg_display_init(&show, a.quiet);
-  vg_display_end_at_once(1);
+  vg_display_deadline(VG_DISPLAY_SOON_S);
   st = convert(&c, &show, &err);
   vg_display_clear(&show);
   if (st >= 0) {
@@ -545,6 +607,7 @@ int vg_cmd_convert(int argc, char **argv)
   }
   if (!c.slices) vg_mesh_release(&c.mesh);
   vg_ugrid_slices_close(c.slices);
+  vg_outputs_release(&c.outputs);
   vg_notes_release(&c.notes);
   free(c.file);
   free(c.mapbc);

@@ -153,7 +153,8 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   vg_mesh_log_settings(&r->mesh, &p->asked);
   vg_resolve_write(&p->asked, list);
   st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);
-  if (st >= 0 && !r->mesh.rank) vg_outputs_sweep(&r->outputs, &p->notes);
+  if (st >= 0 && !r->mesh.rank)
+    st = vg_outputs_claim(&r->outputs, &p->notes, err);
 done:
   return st;
 }
@@ -229,7 +230,7 @@ static struct vg_timeline timeline_of(const struct run *r)
   t.seconds[VG_PHASE_ENGINE] = r->mesh.spans.wall;
   t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
   t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
-  t.seconds[VG_PHASE_WRITE] = r->time.write + r->time.digest;
+  t.seconds[VG_PHASE_WRITE] = r->time.write + r->time.digest + r->time.sync;
   /* Work done only for the timeline is excluded. */
   t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->time.start -
                               r->mesh.time_near;
@@ -300,6 +301,9 @@ static vg_status finish(struct run *r, const struct arguments *a,
 
   VG_TRY(vg_outputs_digest(&r->outputs, err));
   r->time.digest = vg_display_now() - t;
+  t = vg_display_now();
+  VG_TRY(vg_outputs_sync(&r->outputs, err));
+  r->time.sync = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
   if (r->problem.asked.report_html)
     VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
@@ -384,7 +388,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   vg_report_layers_note(&r->layers, &p->boundary.surface, &p->notes);
   st = write_all(r, a, err);
 done:
-  return st;
+  return vg_outputs_failed(&r->outputs, st, err);
 }
 
 static int report_failure(struct run *r, const struct arguments *a,

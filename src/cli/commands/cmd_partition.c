@@ -21,10 +21,9 @@
 #include "run/common/text.h"
 #include "run/input/walls.h"
 #include "run/report/report.h"
+#include "run/stages/output.h"
 
 enum { KEY_WEIGHTS = 500, KEY_WRITE };
-
-enum { FILES_MAX = 3 };
 
 struct arguments {
   struct vg_cli_one one;
@@ -45,8 +44,9 @@ struct run {
   unsigned char *is_wall;
   uint32_t *part;
   struct vg_solver_report report;
-  char *stem, *file[FILES_MAX];
-  size_t n_file;
+  char *stem;
+  struct vg_outputs outputs;
+  struct vg_notes notes;
   double time_read, time_write;
 };
 
@@ -206,15 +206,6 @@ done:
   return st;
 }
 
-/* Add STEM.suffix to the files; NULL if out of memory. */
-static const char *add_file(struct run *r, const char *suffix)
-{
-  char *path;
-
-  if (asprintf(&path, "%s.%s", r->stem, suffix) < 0) return NULL;
-  return r->file[r->n_file++] = path;
-}
-
 static vg_status write_vtu(const struct run *r, const char *path,
                            struct vg_error *err)
 {
@@ -234,31 +225,49 @@ static vg_status write_foam(const struct run *r, const char *path,
          : vg_foam_write_parts(path, r->n_cell, r->part, r->report.n_part, err);
 }
 
-/* Removes the files written before one that failed. */
-static void remove_files(const struct run *r)
+typedef vg_status writer(const struct run *r, const char *path,
+                         struct vg_error *err);
+
+static vg_status write_part(const struct run *r, const char *path,
+                            struct vg_error *err)
 {
-  for (size_t i = 0; i + 1 < r->n_file; i++) unlink(r->file[i]);
+  return vg_metis_part_write(path, r->n_cell, r->part, err);
 }
 
-static vg_status write_files(struct run *r, struct vg_error *err)
+static vg_status write_file(struct run *r, const char *suffix, writer *write,
+                            struct vg_error *err)
+{
+  char *path = vg_outputs_temp_path(&r->outputs, suffix);
+  vg_status st = path ? vg_outputs_add(&r->outputs, suffix, err)
+                      : vg_fail_memory(err, "a file name");
+
+  if (st >= 0) st = vg_outputs_failed(&r->outputs, write(r, path, err), err);
+  free(path);
+  return st;
+}
+
+static vg_status write_files(struct run *r, struct vg_display *show,
+                             struct vg_error *err)
 {
   const struct arguments *a = r->a;
   char suffix[40];
-  const char *path = "";
   double t = vg_display_now();
-  vg_status st = VG_OK;
+  vg_status st;
 
   snprintf(suffix, sizeof suffix, "part.%llu",
            (unsigned long long)a->options.n_part);
-  if (st >= 0 && a->to_part && (path = add_file(r, suffix)))
-    st = vg_metis_part_write(path, r->n_cell, r->part, err);
-  if (st >= 0 && path && a->to_vtu && (path = add_file(r, "vtu")))
-    st = write_vtu(r, path, err);
-  if (st >= 0 && path && a->to_foam && (path = add_file(r, VG_FOAM_SUFFIX)))
-    st = write_foam(r, path, err);
-  if (!path) st = vg_fail_memory(err, "a file name");
-  if (st < 0) remove_files(r);
+  VG_TRY(vg_outputs_begin(&r->outputs, NULL, err));
+  if (a->to_part) VG_TRY(write_file(r, suffix, write_part, err));
+  if (a->to_vtu) VG_TRY(write_file(r, "vtu", write_vtu, err));
+  if (a->to_foam) {
+    VG_TRY(write_file(r, VG_FOAM_SUFFIX, write_foam, err));
+    r->outputs.file[r->outputs.n_file - 1].is_case = 1;
+  }
+  VG_TRY(vg_display_stopped(show, err));
+  vg_display_commit();
+  st = vg_outputs_commit(&r->outputs, err);
   r->time_write = vg_display_now() - t;
+done:
   return st;
 }
 
@@ -274,13 +283,15 @@ static vg_status run_all(struct run *r, struct vg_display *show,
   n = strlen(path) - vg_format_suffix_length(path);
   r->stem = r->a->out ? strdup(r->a->out) : strndup(path, n);
   if (!r->stem) return vg_fail_memory(err, "a file name");
+  VG_TRY(vg_outputs_place(r->stem, NULL, &r->outputs, err));
+  VG_TRY(vg_outputs_claim(&r->outputs, &r->notes, err));
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_mesh(r, err));
   vg_display_update(show, "partition", r->n_cell, 0);
   VG_TRY(vg_solver_part(&r->mesh, &r->layers, &r->a->options, path, r->part,
                         &r->report, err));
   vg_display_update(show, "write", r->n_cell, 0);
-  st = write_files(r, err);
+  st = write_files(r, show, err);
 done:
   return st;
 }
@@ -291,8 +302,12 @@ static void print_json(const struct run *r)
 {
   json_t *files = json_array(), *o;
 
-  for (size_t i = 0; i < r->n_file; i++)
-    json_array_append_new(files, vg_text_json(r->file[i]));
+  for (size_t i = 0; i < r->outputs.n_file; i++) {
+    char *file = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
+
+    json_array_append_new(files, vg_text_json(file ? file : ""));
+    free(file);
+  }
   o = json_pack("{s:o s:I s:o s:f s:f s:f s:o}", "file", vg_text_json(r->path),
                 "inner_faces", (json_int_t)r->info.inner.n_face, "solver_parts",
                 vg_report_solver_json(&r->report), "seconds_read", r->time_read,
@@ -316,7 +331,14 @@ static void print_text(const struct run *r)
   vg_report_solver_text(stdout, &r->report);
   printf("  time (s): read %.2f, write %.2f; peak memory %.0f MB\n",
          r->time_read, r->time_write, vg_report_peak_memory() / 1e6);
-  for (size_t i = 0; i < r->n_file; i++) printf("  %s\n", r->file[i]);
+  for (size_t i = 0; i < r->notes.n; i++)
+    printf("  note: %s\n", r->notes.text[i]);
+  for (size_t i = 0; i < r->outputs.n_file; i++) {
+    char *file = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
+
+    printf("  %s\n", file ? file : "");
+    free(file);
+  }
 }
 
 static void release(struct run *r)
@@ -327,7 +349,8 @@ static void release(struct run *r)
   free(r->is_wall);
   free(r->part);
   free(r->stem);
-  for (size_t i = 0; i < r->n_file; i++) free(r->file[i]);
+  vg_outputs_release(&r->outputs);
+  vg_notes_release(&r->notes);
 }
 
 int vg_cmd_partition(int argc, char **argv)
@@ -376,7 +399,7 @@ int vg_cmd_partition(int argc, char **argv)
 
   vg_cli_parse(&argp, argc, argv, &a);
   vg_display_init(&show, a.one.quiet);
-  vg_display_end_at_once(1);
+  vg_display_deadline(VG_DISPLAY_SOON_S);
   st = run_all(&r, &show, &err);
   vg_display_clear(&show);
   if (st >= 0) {

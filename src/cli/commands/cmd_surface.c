@@ -92,7 +92,7 @@ static vg_status plan_files(struct vg_problem *p, const struct arguments *a,
     return vg_fail_memory(err, "a path");
   }
   VG_TRY(vg_outputs_place(f->stem, a->dir, &f->outputs, err));
-  vg_outputs_sweep(&f->outputs, &p->notes);
+  VG_TRY(vg_outputs_claim(&f->outputs, &p->notes, err));
   VG_TRY(vg_write_list(p->asked.write, &f->n_item, f->item, err));
   for (size_t i = 0; i < f->n_item; i++) {
     if (!strcmp(f->item[i], "cogsg") || !strcmp(f->item[i], "openfoam"))
@@ -197,7 +197,7 @@ static vg_status write_all(const struct vg_problem *p, struct files *f,
   vg_display_commit();
   st = vg_outputs_commit(&f->outputs, err);
 done:
-  return st;
+  return vg_outputs_failed(&f->outputs, st, err);
 }
 
 static void print(const struct vg_problem *p, const struct files *f)
@@ -259,14 +259,13 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   json_t *o = NULL;
   vg_status st;
 
-  vg_display_end_at_once(1); /* nothing is written yet */
+  vg_display_deadline(VG_DISPLAY_SOON_S);
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_settings(a, &p, err));
   VG_TRY(plan_files(&p, a, &f, err));
   VG_TRY(make_surface(&p, show, err));
   o = report(&p, &f);
   if (!o) VG_TRY(vg_fail_memory(err, "the report"));
-  vg_display_end_at_once(0);
   vg_display_update(show, "write", p.boundary.surface.n_tri, 0);
   VG_TRY(write_all(&p, &f, o, show, err));
   vg_display_clear(show);

@@ -11,11 +11,17 @@ static void times(struct page *p)
   static const struct {
     const char *key, *name;
   } phase[] = {
-    { "read", "Reading" },       { "check", "Surface check" },
-    { "sizes", "Sizing field" }, { "layers", "Boundary layers" },
-    { "fill", "Volume fill" },   { "number", "Numbering" },
-    { "judge", "Mesh check" },   { "parts", "Solver partition" },
-    { "write", "Writing" },      { "digest", "Digests of files" },
+    { "read", "Reading" },
+    { "check", "Surface check" },
+    { "sizes", "Sizing field" },
+    { "layers", "Boundary layers" },
+    { "fill", "Volume fill" },
+    { "number", "Numbering" },
+    { "judge", "Mesh check" },
+    { "parts", "Solver partition" },
+    { "write", "Writing" },
+    { "digest", "Digests of files" },
+    { "sync", "Files to the disk (fsync)" },
   };
   const json_t *seconds = vg_page_json(p, "seconds");
   double total = vg_page_number(p, "seconds.total");

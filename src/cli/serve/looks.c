@@ -250,7 +250,7 @@ static void add_progress(const struct vg_look_process *p, json_t *o)
   int64_t whole;
   size_t n = vg_file_tail(path_of(p, OUTPUT, path), text, sizeof text, &whole);
 
-  vg_tell_tail(text, n, &tell);
+  vg_tell_tail(text, n, whole > (int64_t)n, &tell);
   json_object_set_new(o, "stage", vg_text_json(tell.stage));
   json_object_set_new(o, "share",
                       tell.share >= 0 ? json_real(tell.share) : json_null());

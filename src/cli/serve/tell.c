@@ -101,7 +101,7 @@ int vg_tell_line(const char *line, size_t n, struct vg_tell *out)
   return 1;
 }
 
-int vg_tell_tail(const char *data, size_t n, struct vg_tell *out)
+int vg_tell_tail(const char *data, size_t n, int is_cut, struct vg_tell *out)
 {
   int found = 0;
 
@@ -109,7 +109,8 @@ int vg_tell_tail(const char *data, size_t n, struct vg_tell *out)
     const char *end = memchr(data + at, '\n', n - at);
 
     if (!end) break;
-    found |= vg_tell_line(data + at, (size_t)(end - data) - at, out);
+    if (at || !is_cut)
+      found |= vg_tell_line(data + at, (size_t)(end - data) - at, out);
     at = (size_t)(end - data) + 1;
   }
   return found;

@@ -22,9 +22,10 @@ struct vg_tell {
  * line, else 0. */
 int vg_tell_line(const char *line, size_t n, struct vg_tell *out);
 
-/** Find the last progress line in the end of a file, whose first line may be
- * truncated. Returns 0 and leaves *out unchanged if it finds no such line. */
-int vg_tell_tail(const char *data, size_t n, struct vg_tell *out);
+/** Find the last progress line in the end of a file. is_cut: the file is
+ * longer, so that the first line may be truncated and does not count. Returns 0
+ * and leaves *out unchanged if it finds no such line. */
+int vg_tell_tail(const char *data, size_t n, int is_cut, struct vg_tell *out);
 
 /** The exit status at the end of a log (--log); -1 if it is missing. */
 int vg_tell_status(const char *data, size_t n);

@@ -53,6 +53,7 @@ void vg_run_ended(struct vg_serve_run *run, int exit_status)
   run->is_child = 0;
   run->ended = time(NULL);
   run->note[0] = 0;
+  run->tell = (struct vg_tell)VG_TELL_INIT; /* The last lines are a report. */
   if (run->exit_status == VG_EXIT_DONE) {
     run->state = VG_SERVE_DONE;
   } else if (run->exit_status == VG_EXIT_LIMIT) {
@@ -116,7 +117,7 @@ static void listen_to(struct vg_serve_run *run)
 
   if (whole == run->output_size) return;
   run->output_size = whole;
-  vg_tell_tail(text, n, &run->tell);
+  vg_tell_tail(text, n, whole > (int64_t)n, &run->tell);
 }
 
 void vg_runs_watch(struct vg_serve_runs *r)

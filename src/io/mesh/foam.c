@@ -6,11 +6,13 @@
 #include "io/mesh/foam.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -369,28 +371,35 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
+static void remove_mesh(const char *folder)
+{
+  for (int i = 0; i < VG_FOAM_FILES; i++) {
+    char *path = vg_foam_path(folder, vg_foam_file[i]);
+
+    if (path) unlink(path);
+    free(path);
+  }
+  rmdir(folder);
+}
+
 static vg_status write_into(const char *case_dir, const char *constant,
                             struct writing *w, struct vg_error *err)
 {
-  char *part = vg_foam_path(constant, "polyMesh.part");
   char *mesh = vg_foam_path(constant, "polyMesh");
   vg_status st;
 
-  if (!part || !mesh) {
-    st = vg_fail_memory(err, "a file name");
-    goto done;
-  }
+  if (!mesh) return vg_fail_memory(err, "a file name");
   VG_TRY(vg_foam_folder(case_dir, err));
   VG_TRY(vg_foam_folder(constant, err));
-  VG_TRY(vg_foam_folder(part, err));
-  w->folder = part;
+  if (mkdir(mesh, 0777))
+    VG_TRY(vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", mesh,
+                   strerror(errno)));
+  w->folder = mesh;
   st = put_mesh(w, err);
   for (int i = 0; i < VG_FOAM_FILES; i++) vg_output_release(w->out + i);
   if (st == VG_OK) st = vg_foam_surroundings(case_dir, err);
-  if (st == VG_OK) st = vg_foam_place_mesh(part, mesh, err);
-  vg_foam_remove_mesh(part);
+  if (st < 0) remove_mesh(mesh);
 done:
-  free(part);
   free(mesh);
   return st;
 }

@@ -30,10 +30,8 @@ struct vg_foam_options {
 /** Returns 1 if `word` of a write list requests a case; sets *options. */
 int vg_foam_word(const char *word, struct vg_foam_options *options);
 
-/** Write the mesh into a case folder, which is created if absent. An earlier
- * mesh in the folder is replaced, and its zones, sets, subdomains and
- * addressing are removed; everything else in the folder is kept. The new mesh
- * appears when it is complete.
+/** Write the mesh into a case folder, which is created if absent and must not
+ * hold a mesh. vg_foam_merge puts such a case in place of an earlier one.
  * @param options  NULL: binary
  * VG_ERR_INPUT: the boundary does not close the cells (the message names the
  * cell or boundary face and its vertices). VG_ERR_UNSUPPORTED: labels need more
@@ -50,15 +48,23 @@ vg_status vg_foam_write_parts(const char *case_dir, size_t n_cell,
                               const uint32_t *part, size_t n_part,
                               struct vg_error *err);
 
-/** Move the files of vg_foam_write from one folder to another on the same file
- * system, with the same effect as if vg_foam_write had written them there. The
- * first folder is removed. For output that is first collected in a temporary
- * folder. */
-vg_status vg_foam_place(const char *from_case, const char *to_case,
-                        struct vg_error *err);
+/** Receives the moves of vg_foam_merge. `path` is relative to both cases; `to`
+ * is NULL, or the absolute path of the target instead. VG_FOAM_FOLDER replaces
+ * a folder as a whole. VG_FOAM_REMOVE removes a file of the second case. */
+enum vg_foam_move { VG_FOAM_FILE, VG_FOAM_FOLDER, VG_FOAM_REMOVE };
+struct vg_foam_mover {
+  vg_status (*add)(void *user, enum vg_foam_move kind, const char *path,
+                   const char *to, struct vg_error *err);
+  void *user;
+};
 
-/** Remove a case that has just been written: the files of vg_foam_write, and
- * the folders that become empty. Absent files are not an error. */
-void vg_foam_remove(const char *case_dir);
+/** List the moves that put a case of vg_foam_write in place of another one,
+ * which may be absent: the earlier mesh is replaced, and its zones, sets,
+ * subdomains and addressing are removed; everything else in the second case is
+ * kept. Files of its polyMesh folder that belong to no mesh get a second name
+ * in that of the first case. The second case is not changed. */
+vg_status vg_foam_merge(const char *from_case, const char *to_case,
+                        const struct vg_foam_mover *mover,
+                        struct vg_error *err);
 
 #endif

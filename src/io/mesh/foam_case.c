@@ -65,6 +65,8 @@ static const struct {
 #define N_SYSTEM (sizeof system_file / sizeof *system_file)
 
 #define DECOMPOSE_DICT "decomposeParDict"
+#define MESH_PATH "constant/polyMesh"
+#define PARTS_PATH "constant/" VG_FOAM_PARTS
 
 char *vg_foam_path(const char *a, const char *b)
 {
@@ -105,85 +107,6 @@ void vg_foam_header(struct vg_output *out, const char *class_name,
   if (note) vg_output_format(out, "    note        \"%s\";\n", note);
   vg_output_format(out, "    location    \"%s\";\n    object      %s;\n}\n\n",
                    location, object);
-}
-
-/* Remove "folder/name" and "folder/name.gz". */
-static void unlink_both(const char *folder, const char *name)
-{
-  char *path = vg_foam_path(folder, name), *packed;
-
-  if (!path) return;
-  unlink(path);
-  packed = vg_alloc(strlen(path) + 4, 1);
-  if (packed) {
-    sprintf(packed, "%s.gz", path);
-    unlink(packed);
-  }
-  free(packed);
-  free(path);
-}
-
-static void empty_sets(const char *folder)
-{
-  char *sets = vg_foam_path(folder, "sets");
-  DIR *dir = sets ? opendir(sets) : NULL;
-  struct dirent *entry;
-
-  while (dir && (entry = readdir(dir))) {
-    char *path = vg_foam_path(sets, entry->d_name);
-
-    if (path) unlink(path); /* fails for folders, and so for . and .. */
-    free(path);
-  }
-  if (dir) closedir(dir);
-  if (sets) rmdir(sets);
-  free(sets);
-}
-
-void vg_foam_remove_mesh(const char *folder)
-{
-  for (int i = VG_FOAM_FILES - 1; i >= 0; i--)
-    unlink_both(folder, vg_foam_file[i]);
-  rmdir(folder);
-}
-
-static vg_status move(const char *from, const char *to, struct vg_error *err)
-{
-  if (!rename(from, to)) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot be moved to its final place: %s",
-                 to, strerror(errno));
-}
-
-vg_status vg_foam_place_mesh(const char *from, const char *to,
-                             struct vg_error *err)
-{
-  vg_status st = VG_OK;
-  struct stat s;
-
-  /* If the target is absent or empty, the whole mesh appears at once. */
-  if (!rename(from, to)) return VG_OK;
-  /* ENOTDIR: may be a link to a folder that several cases share. */
-  if (errno != ENOTEMPTY && errno != EEXIST &&
-      (errno != ENOTDIR || stat(to, &s) || !S_ISDIR(s.st_mode)))
-    return vg_fail(err, VG_ERR_IO, "%s: cannot be moved to its final place: %s",
-                   to, strerror(errno));
-  /* If the program is stopped from here on, it leaves a mesh without
-   * `boundary`, which no program reads, rather than a mixture of two meshes. */
-  for (int i = VG_FOAM_FILES - 1; i >= 0; i--) unlink_both(to, vg_foam_file[i]);
-  for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
-    unlink_both(to, belongs[i]);
-  empty_sets(to);
-  for (int i = 0; i < VG_FOAM_FILES && st == VG_OK; i++) {
-    char *source = vg_foam_path(from, vg_foam_file[i]);
-    char *target = vg_foam_path(to, vg_foam_file[i]);
-
-    st = source && target ? move(source, target, err)
-                          : vg_fail_memory(err, "a file name");
-    free(source);
-    free(target);
-  }
-  rmdir(from);
-  return st;
 }
 
 /* NAME.foam for this case; NULL if there is not enough memory. */
@@ -255,105 +178,212 @@ done:
   return st;
 }
 
-/* CASE/a, or CASE/a/b if b is not NULL. */
-static char *inside(const char *case_dir, const char *a, const char *b)
-{
-  char *first = vg_foam_path(case_dir, a), *both;
+/* --- moving a case over an earlier one ----------------------------------- */
 
-  if (!first || !b) return first;
-  both = vg_foam_path(first, b);
-  free(first);
-  return both;
+struct merging {
+  const char *from_case, *to_case;
+  const struct vg_foam_mover *mover;
+};
+
+static vg_status merge(const struct merging *m, const char *path,
+                       struct vg_error *err);
+
+static vg_status add(const struct merging *m, enum vg_foam_move kind,
+                     const char *path, const char *to, struct vg_error *err)
+{
+  return m->mover->add(m->mover->user, kind, path, to, err);
 }
 
-/* Move a file from one case to the other. With keep_old an existing target is
- * kept. Without it, the target is replaced, or removed if there is no
- * source. */
-static vg_status place_file(const char *from_case, const char *to_case,
-                            const char *folder, const char *name, int keep_old,
-                            struct vg_error *err)
+static int is_dot(const char *name)
 {
-  char *from = inside(from_case, folder, name);
-  char *to = inside(to_case, folder, name);
+  return !strcmp(name, ".") || !strcmp(name, "..");
+}
+
+/* Is it a file or folder of the earlier mesh? */
+static int is_replaced(const char *name)
+{
+  size_t n = strlen(name);
+
+  if (!strcmp(name, "sets")) return 1;
+  if (n > 3 && !strcmp(name + n - 3, ".gz")) n -= 3;
+  for (int i = 0; i < VG_FOAM_FILES; i++)
+    if (strlen(vg_foam_file[i]) == n && !strncmp(name, vg_foam_file[i], n))
+      return 1;
+  for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
+    if (strlen(belongs[i]) == n && !strncmp(name, belongs[i], n)) return 1;
+  return 0;
+}
+
+/* Gives a file, or all files of a folder, a second name. */
+static int link_all(const char *from, const char *to)
+{
+  struct stat is;
+  struct dirent *entry;
+  DIR *dir;
+  int failed = 0;
+
+  if (lstat(from, &is)) return -1;
+  if (!S_ISDIR(is.st_mode)) return link(from, to);
+  dir = mkdir(to, 0777) ? NULL : opendir(from);
+  if (!dir) return -1;
+  while (!failed && (entry = readdir(dir))) {
+    char *a, *b;
+
+    if (is_dot(entry->d_name)) continue;
+    a = vg_foam_path(from, entry->d_name);
+    b = vg_foam_path(to, entry->d_name);
+    failed = a && b ? link_all(a, b) : -1;
+    free(a);
+    free(b);
+  }
+  closedir(dir);
+  return failed;
+}
+
+/* The folder of the new mesh, which replaces the earlier one as a whole, also
+ * gets the files there that belong to no mesh. */
+static vg_status keep_others(const char *earlier, const char *mesh,
+                             struct vg_error *err)
+{
+  DIR *dir = opendir(earlier);
+  struct dirent *entry;
   vg_status st = VG_OK;
 
+  if (!dir)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", earlier,
+                   strerror(errno));
+  while (st >= 0 && (entry = readdir(dir))) {
+    char *a, *b;
+
+    if (is_dot(entry->d_name) || is_replaced(entry->d_name)) continue;
+    a = vg_foam_path(earlier, entry->d_name);
+    b = vg_foam_path(mesh, entry->d_name);
+    if (!a || !b) st = vg_fail_memory(err, "a file name");
+    else if (link_all(a, b))
+      st = vg_fail(err, VG_ERR_IO,
+                   "%s: cannot be kept with the new mesh: %s; move it to "
+                   "another folder",
+                   a, strerror(errno));
+    free(a);
+    free(b);
+  }
+  closedir(dir);
+  return st;
+}
+
+/* Several cases may share a mesh by a link, which stays. */
+static vg_status merge_mesh(const struct merging *m, const char *path,
+                            const char *from, const char *to,
+                            struct vg_error *err)
+{
+  char *real = realpath(to, NULL);
+  struct stat is;
+  vg_status st;
+
+  if (!real)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", to, strerror(errno));
+  VG_TRY(keep_others(real, from, err));
+  if (!stat(real, &is)) chmod(from, is.st_mode & 07777);
+  st = add(m, VG_FOAM_FOLDER, path,
+           !lstat(to, &is) && S_ISLNK(is.st_mode) ? real : NULL, err);
+done:
+  free(real);
+  return st;
+}
+
+static vg_status merge_folder(const struct merging *m, const char *path,
+                              const char *from, struct vg_error *err)
+{
+  DIR *dir = opendir(from);
+  struct dirent *entry;
+  vg_status st = VG_OK;
+
+  if (!dir)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", from,
+                   strerror(errno));
+  while (st >= 0 && (entry = readdir(dir))) {
+    char *inner;
+
+    if (is_dot(entry->d_name)) continue;
+    inner = *path ? vg_foam_path(path, entry->d_name) : strdup(entry->d_name);
+    st = inner ? merge(m, inner, err) : vg_fail_memory(err, "a file name");
+    free(inner);
+  }
+  closedir(dir);
+  return st;
+}
+
+/* Of existing files, only the subdomains of the cells are replaced. */
+static vg_status merge_into(const struct merging *m, const char *path,
+                            const char *from, const char *to,
+                            const struct stat *is, struct vg_error *err)
+{
+  struct stat there;
+
+  if (!S_ISDIR(is->st_mode))
+    return strcmp(path, PARTS_PATH) ? VG_OK
+                                    : add(m, VG_FOAM_FILE, path, NULL, err);
+  if (stat(to, &there) || !S_ISDIR(there.st_mode))
+    return vg_fail(err, VG_ERR_IO,
+                   "%s: a file exists where a folder must be written; move it, "
+                   "or choose another --out DIR",
+                   to);
+  return strcmp(path, MESH_PATH) ? merge_folder(m, path, from, err)
+                                 : merge_mesh(m, path, from, to, err);
+}
+
+/* Adds the moves of `path`, a file or folder of the new case. */
+static vg_status merge(const struct merging *m, const char *path,
+                       struct vg_error *err)
+{
+  char *from = *path ? vg_foam_path(m->from_case, path) : strdup(m->from_case);
+  char *to = *path ? vg_foam_path(m->to_case, path) : strdup(m->to_case);
+  struct stat is, there;
+  vg_status st;
+
   if (!from || !to) st = vg_fail_memory(err, "a file name");
-  else if (keep_old && !access(to, F_OK)) st = VG_OK;
-  else if (!access(from, F_OK)) st = move(from, to, err);
-  else if (!keep_old) unlink(to);
+  else if (lstat(from, &is))
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", from, strerror(errno));
+  else if (!lstat(to, &there)) st = merge_into(m, path, from, to, &is, err);
+  else
+    st = add(m, S_ISDIR(is.st_mode) ? VG_FOAM_FOLDER : VG_FOAM_FILE, path, NULL,
+             err);
   free(from);
   free(to);
   return st;
 }
 
 /* The subdomains of an earlier mesh do not fit this one. */
-static vg_status place_parts(const char *from_case, const char *to_case,
-                             struct vg_error *err)
+static vg_status remove_parts(const struct merging *m, struct vg_error *err)
 {
-  vg_status st = place_file(from_case, to_case, "constant", VG_FOAM_PARTS, 0,
-                            err);
+  char *from = vg_foam_path(m->from_case, PARTS_PATH);
+  char *to = vg_foam_path(m->to_case, PARTS_PATH);
+  vg_status st = VG_OK;
 
-  return st < 0
-         ? st
-         : place_file(from_case, to_case, "system", DECOMPOSE_DICT, 1, err);
-}
-
-vg_status vg_foam_place(const char *from_case, const char *to_case,
-                        struct vg_error *err)
-{
-  char *from = inside(from_case, "constant", "polyMesh");
-  char *to = inside(to_case, "constant", "polyMesh");
-  char *constant = inside(to_case, "constant", NULL);
-  vg_status st;
-
-  if (!from || !to || !constant) {
-    st = vg_fail_memory(err, "a file name");
-    goto done;
-  }
-  VG_TRY(vg_foam_folder(to_case, err));
-  VG_TRY(vg_foam_folder(constant, err));
-  VG_TRY(vg_foam_surroundings(to_case, err));
-  VG_TRY(vg_foam_place_mesh(from, to, err));
-  VG_TRY(place_parts(from_case, to_case, err));
-  vg_foam_remove(from_case);
-done:
+  if (!from || !to) st = vg_fail_memory(err, "a file name");
+  else if (access(from, F_OK) && !access(to, F_OK))
+    st = add(m, VG_FOAM_REMOVE, PARTS_PATH, NULL, err);
   free(from);
   free(to);
-  free(constant);
   return st;
 }
 
-static void drop(const char *case_dir, const char *a, const char *b)
+vg_status vg_foam_merge(const char *from_case, const char *to_case,
+                        const struct vg_foam_mover *mover, struct vg_error *err)
 {
-  char *path = inside(case_dir, a, b);
+  const struct merging m = { from_case, to_case, mover };
+  vg_status st;
 
-  if (path && unlink(path)) rmdir(path);
-  free(path);
-}
-
-void vg_foam_remove(const char *case_dir)
-{
-  char *mesh = inside(case_dir, "constant", "polyMesh");
-  char *marker = marker_name(case_dir);
-
-  if (mesh) vg_foam_remove_mesh(mesh);
-  for (size_t i = 0; i < N_SYSTEM; i++)
-    drop(case_dir, "system", system_file[i].name);
-  if (marker) drop(case_dir, marker, NULL);
-  drop(case_dir, "constant", VG_FOAM_PARTS);
-  drop(case_dir, "system", DECOMPOSE_DICT);
-  drop(case_dir, "system", NULL);
-  drop(case_dir, "constant", NULL);
-  rmdir(case_dir);
-  free(mesh);
-  free(marker);
+  assert(from_case && to_case && mover && mover->add);
+  st = merge(&m, "", err);
+  return st < 0 ? st : remove_parts(&m, err);
 }
 
 /* Write system/decomposeParDict if it is absent. */
 static vg_status put_dict(const char *case_dir, size_t n_part,
                           struct vg_error *err)
 {
-  char *path = inside(case_dir, "system", DECOMPOSE_DICT), text[200];
+  char *path = vg_foam_path(case_dir, "system/" DECOMPOSE_DICT), text[200];
   vg_status st;
 
   snprintf(text, sizeof text,
@@ -372,7 +402,7 @@ vg_status vg_foam_write_parts(const char *case_dir, size_t n_cell,
                               struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
-  char *path = inside(case_dir, "constant", VG_FOAM_PARTS);
+  char *path = vg_foam_path(case_dir, PARTS_PATH);
   vg_status st;
 
   assert(part || !n_cell);

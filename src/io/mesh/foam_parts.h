@@ -27,17 +27,9 @@ char *vg_foam_path(const char *a, const char *b);
 /** Create a folder unless it exists. */
 vg_status vg_foam_folder(const char *path, struct vg_error *err);
 
-/** Files of a polyMesh, in the order in which they are moved to their place. */
+/** Files of a polyMesh. */
 enum { VG_FOAM_FILES = 5 };
 extern const char *const vg_foam_file[VG_FOAM_FILES];
-
-/** Move the mesh files of one folder to another, which may hold an earlier
- * mesh, and remove the first folder. */
-vg_status vg_foam_place_mesh(const char *from, const char *to,
-                             struct vg_error *err);
-
-/** Remove the mesh files of a folder, and the folder if it becomes empty. */
-void vg_foam_remove_mesh(const char *folder);
 
 /** Write the header of an OpenFOAM file; note may be NULL. */
 struct vg_output;

@@ -75,6 +75,9 @@ void vg_display_end_at_once(int on);
  * that call vg_display_interrupted rarely. Once. */
 void vg_display_deadline(double seconds);
 
+/* Deadline of commands that have nothing to finish. */
+#define VG_DISPLAY_SOON_S 0.1
+
 /** Sets the folder of incomplete files; NULL: none. The path is copied.
  * Threads: one at a time. */
 void vg_display_temporary(const char *dir);

@@ -25,24 +25,20 @@
 #include "run/settings/deck.h"
 #include "run/settings/lists.h"
 #include "run/settings/plan_options.h"
-#include "run/stages/hidden.h"
 
 #define WALLS "wall.vtu"
 
-static void remove_temp_dir(struct vg_outputs *o)
+static void close_commit(struct vg_outputs *o)
 {
-  if (!o->temp_dir) return;
-  if (!o->is_guest) {
-    vg_hidden_remove(o->temp_dir, o->lock);
-    vg_display_temporary(NULL);
-  }
-  free(o->temp_dir);
-  o->temp_dir = NULL;
+  if (!o->commit.hidden) return;
+  vg_commit_close(&o->commit);
+  vg_display_temporary(NULL);
 }
 
 void vg_outputs_release(struct vg_outputs *o)
 {
-  remove_temp_dir(o);
+  close_commit(o);
+  free(o->temp_dir);
   if (o->made_dir) rmdir(o->dir); /* Fails if a file was written. */
   for (size_t i = 0; i < o->n_file; i++) free(o->file[i].suffix);
   free(o->file);
@@ -79,6 +75,21 @@ char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
            : path;
   }
   return join(o->dir, o->name, suffix);
+}
+
+vg_status vg_outputs_failed(const struct vg_outputs *o, vg_status st,
+                            struct vg_error *err)
+{
+  const size_t n = o->temp_dir ? strlen(o->temp_dir) : 0;
+  char *at = st < 0 && err && n ? strstr(err->text, o->temp_dir) : NULL;
+  char *rest;
+
+  if (!at || at[n] != '/' || !(rest = strdup(at + n + 1))) return st;
+  snprintf(at, (size_t)(err->text + sizeof err->text - at), "%s%s%s",
+           strcmp(o->dir, ".") ? o->dir : "", strcmp(o->dir, ".") ? "/" : "",
+           rest);
+  free(rest);
+  return st;
 }
 
 static int is_case(const char *item)
@@ -271,10 +282,22 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
   return st < 0 ? st : add_conditions(o, err);
 }
 
-void vg_outputs_sweep(const struct vg_outputs *o, struct vg_notes *notes)
+static void add_note(void *notes, const char *text)
 {
-  assert(o->dir && !o->temp_dir);
-  vg_hidden_sweep(o->dir, notes);
+  if (notes) vg_note(notes, "%s", text);
+}
+
+vg_status vg_outputs_claim(struct vg_outputs *o, struct vg_notes *notes,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  assert(o->dir && !o->commit.hidden);
+  st = vg_commit_open(o->dir, o->name, add_note, notes, &o->commit, err);
+  if (st < 0) return st;
+  vg_display_temporary(o->commit.hidden);
+  vg_commit_sweep(o->dir, add_note, notes);
+  return VG_OK;
 }
 
 vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
@@ -298,15 +321,6 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
                    p->read.files.mapbc, (int)m->patch[i].id, m->patch[i].name);
   }
   vg_mapbc_release(&bc);
-  return st;
-}
-
-static vg_status make_temp_dir(struct vg_outputs *o, struct vg_error *err)
-{
-  vg_status st = vg_hidden_make(o->dir, &o->temp_dir, &o->lock, err);
-
-  if (st == VG_ERR_IO) return cannot_write(o, err);
-  if (st >= 0) vg_display_temporary(o->temp_dir);
   return st;
 }
 
@@ -336,7 +350,11 @@ vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
 
   assert(!o->temp_dir);
   o->is_guest = vg_comm_rank(comm) > 0;
-  if (!o->is_guest) st = make_temp_dir(o, err);
+  if (!o->is_guest && !o->commit.hidden) st = vg_outputs_claim(o, NULL, err);
+  if (st >= 0 && !o->is_guest) {
+    o->temp_dir = strdup(o->commit.fresh);
+    if (!o->temp_dir) st = vg_fail_memory(err, "the output paths");
+  }
   VG_TRY(vg_comm_agree(comm, st, err));
   if (!o->is_guest)
     name = (struct vg_bytes){ strlen(o->temp_dir) + 1,
@@ -478,18 +496,20 @@ static vg_status write_conditions(struct writing *w, const char *item,
   int is_fun3d = strcmp(item, "mapbc") != 0;
   struct vg_mesh boundary = VG_MESH_INIT;
   char *path = vg_outputs_temp_path(w->o, item);
-  vg_status st = vg_slices_boundary(w->comm, w->mesh, w->threads, &boundary,
-                                    err);
+  vg_status st = vg_outputs_add(w->o, item, err);
 
   if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
+  VG_TRY(vg_comm_agree(w->comm, st, err));
+  st = vg_slices_boundary(w->comm, w->mesh, w->threads, &boundary, err);
   if (st >= 0 && !w->o->is_guest)
     st = is_fun3d
          ? vg_mapbc_write(path, &boundary, VG_MAPBC_FUN3D, NULL, NULL, err)
          : vg_mapbc_write_output(path, &boundary, w->p->asked.title, NULL, err);
+  st = vg_comm_agree(w->comm, st, err);
+done:
   vg_mesh_release(&boundary);
   free(path);
-  st = vg_comm_agree(w->comm, st, err);
-  return st < 0 ? st : vg_outputs_add(w->o, item, err);
+  return st;
 }
 
 /* Finds the pieces of a .pvtu by their names. */
@@ -522,15 +542,17 @@ static vg_status write_slices(struct writing *w, const char *item,
                                              : one;
   struct vg_slices_options o = vg_options_slices(&w->p->asked);
   char *stem;
-  vg_status st;
+  vg_status st = VG_OK;
 
   o.threads = w->threads;
   if (asprintf(&stem, "%s/%s", w->o->temp_dir, w->o->name) < 0)
     return vg_fail_memory(err, "the output paths");
-  st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
+  for (size_t i = 0; part[i] && st >= 0; i++)
+    st = vg_outputs_add(w->o, part[i], err);
+  st = vg_comm_agree(w->comm, st, err);
+  if (st >= 0) st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
   if (st >= 0 && part == pair)
     st = vg_slices_write_with(w->comm, w->mesh, stem, pair[1], &o, err);
-  for (; *part && st >= 0; part++) st = vg_outputs_add(w->o, *part, err);
   if (st >= 0 && !strcmp(item, "pvtu")) st = add_pieces(w, stem, err);
   free(stem);
   return st;
@@ -558,12 +580,13 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
                              struct vg_error *err)
 {
   char *path = vg_outputs_temp_path(o, WALLS);
-  vg_status st = path
-                 ? vg_layer_stage_write(layers, &p->boundary.surface, path, err)
-                 : vg_fail_memory(err, "the output paths");
+  vg_status st = vg_outputs_add(o, WALLS, err);
 
+  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
+  if (st >= 0)
+    st = vg_layer_stage_write(layers, &p->boundary.surface, path, err);
   free(path);
-  return st < 0 ? st : vg_outputs_add(o, WALLS, err);
+  return st;
 }
 
 /* The resolved settings state the files with which they were used. The number
@@ -597,10 +620,11 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   }
   settings.threads = 0;
   *settings.helpers = 0;
-  st = vg_deck_write(path, &settings, comment, VG_DECK_ALL, err);
+  st = vg_outputs_add(o, "resolved.deck", err);
+  if (st >= 0) st = vg_deck_write(path, &settings, comment, VG_DECK_ALL, err);
   free(path);
   free(comment);
-  return st < 0 ? st : vg_outputs_add(o, "resolved.deck", err);
+  return st;
 }
 
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
@@ -663,26 +687,67 @@ vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
   return st;
 }
 
+vg_status vg_outputs_sync(const struct vg_outputs *o, struct vg_error *err)
+{
+  assert(!o->is_guest && o->temp_dir);
+  return vg_commit_sync(&o->commit, err);
+}
+
+/* --- moving files into place --------------------------------------------- */
+
+/* A case in the hidden folder. */
+struct moving {
+  struct vg_outputs *o;
+  const char *case_name;
+};
+
+static vg_status add_case_move(void *moving, enum vg_foam_move kind,
+                               const char *path, const char *to,
+                               struct vg_error *err)
+{
+  const enum vg_move_kind kind_of[] = { [VG_FOAM_FILE] = VG_MOVE_FILE,
+                                        [VG_FOAM_FOLDER] = VG_MOVE_FOLDER,
+                                        [VG_FOAM_REMOVE] = VG_MOVE_REMOVE };
+  const struct moving *m = moving;
+  char *name;
+  vg_status st;
+
+  if (asprintf(&name, *path ? "%s/%s" : "%s", m->case_name, path) < 0)
+    return vg_fail_memory(err, "the output paths");
+  st = vg_commit_add(&m->o->commit, kind_of[kind],
+                     kind == VG_FOAM_REMOVE ? "" : name, to ? to : name, err);
+  free(name);
+  return st;
+}
+
+static vg_status add_moves(struct vg_outputs *o,
+                           const struct vg_outputs_file *f,
+                           struct vg_error *err)
+{
+  char *from = vg_outputs_temp_path(o, f->suffix);
+  char *to = vg_outputs_final(o, f->suffix);
+  const char *name = from ? strrchr(from, '/') + 1 : NULL;
+  struct moving moving = { o, name };
+  const struct vg_foam_mover mover = { add_case_move, &moving };
+  vg_status st;
+
+  if (!from || !to) st = vg_fail_memory(err, "the output paths");
+  else
+    st = f->is_case ? vg_foam_merge(from, to, &mover, err)
+                    : vg_commit_add(&o->commit, VG_MOVE_FILE, name, name, err);
+  free(from);
+  free(to);
+  return st;
+}
+
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
   assert(!o->is_guest && o->temp_dir);
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
-    if (!o->file[i].is_case && !o->file[i].keep_old)
-      st = refuse_folder(o, o->file[i].suffix, err);
-  for (size_t i = 0; i < o->n_file && st >= 0; i++) {
-    char *from = vg_outputs_temp_path(o, o->file[i].suffix);
-    char *to = vg_outputs_final(o, o->file[i].suffix);
-
-    if (!from || !to) st = vg_fail_memory(err, "the output paths");
-    else if (o->file[i].is_case) st = vg_foam_place(from, to, err);
-    else if (!o->file[i].keep_old && rename(from, to))
-      st = vg_fail(err, VG_ERR_IO, "%s: cannot be moved into place: %s", to,
-                   strerror(errno));
-    free(from);
-    free(to);
-  }
-  remove_temp_dir(o);
+    if (!o->file[i].keep_old) st = add_moves(o, &o->file[i], err);
+  if (st >= 0) st = vg_commit_run(&o->commit, err);
+  close_commit(o);
   return st;
 }

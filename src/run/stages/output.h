@@ -7,6 +7,7 @@
 
 #include "base/comm.h"
 #include "core/mesh/slices.h"
+#include "run/commit/commit.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/settings/lists.h"
@@ -16,9 +17,9 @@ struct vg_slices_ugrid;
 struct vg_outputs {
   char *dir, *name; /* Target folder ("." if none is given), base name. */
   int made_dir;     /* 1: dir did not exist; removed again if it stays empty. */
-  char *temp_dir;   /* Hidden folder while writing, or NULL. */
-  int lock;         /* Descriptor that locks the hidden folder on rank 0. */
-  int is_guest;     /* 1: another rank makes and removes the hidden folder. */
+  struct vg_commit commit; /* On rank 0, from vg_outputs_claim. */
+  char *temp_dir;          /* Hidden folder while writing, or NULL. */
+  int is_guest; /* 1: another rank makes and removes the hidden folder. */
   size_t n_item;
   char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
   size_t n_open;     /* Number of entries of `open`. */
@@ -47,8 +48,9 @@ void vg_outputs_release(struct vg_outputs *o);
 vg_status vg_outputs_place(const char *stem, const char *dir,
                            struct vg_outputs *o, struct vg_error *err);
 
-/** Makes the hidden folder. Collective. Files are then written to
- * vg_outputs_temp_path, and each file is registered by vg_outputs_add. */
+/** Distributes the name of the hidden folder, and makes it if that has not been
+ * done. Collective. Each file is then registered by vg_outputs_add and written
+ * to vg_outputs_temp_path. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err);
 
@@ -61,10 +63,14 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
                           const char *dir, const char *list,
                           struct vg_outputs *o, struct vg_error *err);
 
-/** Removes the hidden folders that runs which were killed have left in the
- * target folder, and notes them (hidden.h). Rank 0 calls it before
- * vg_outputs_begin. */
-void vg_outputs_sweep(const struct vg_outputs *o, struct vg_notes *notes);
+/** Makes the hidden folder and locks the names o->name.* in the target folder
+ * against other processes, until vg_outputs_commit or vg_outputs_release. The
+ * files of runs that were killed are completed, restored or removed, and noted
+ * (run/commit/commit.h). On rank 0, before vg_outputs_begin.
+ *
+ * VG_ERR_INPUT: another process has the lock; the message names it. */
+vg_status vg_outputs_claim(struct vg_outputs *o, struct vg_notes *notes,
+                           struct vg_error *err);
 
 /** Called once the surface is final, before the fill: an existing .mapbc that
  * is an input is kept, and must contain every patch. */
@@ -103,11 +109,21 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
 /** Computes size and XXH3 digest of every file. On rank 0. */
 vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err);
 
+/** Brings all files written so far to the disk. vg_outputs_commit does it as
+ * well; the time of meshes is measured here. On rank 0. */
+vg_status vg_outputs_sync(const struct vg_outputs *o, struct vg_error *err);
+
+/** Returns st. After a failure, file names of the hidden folder in the message
+ * become those of the target folder. */
+vg_status vg_outputs_failed(const struct vg_outputs *o, vg_status st,
+                            struct vg_error *err);
+
 /** Registers a file that the caller writes into the hidden folder. */
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
                          struct vg_error *err);
 
-/** Moves all files into place and removes the hidden folder. On rank 0. */
+/** Moves all files into place, or none, and removes the hidden folder. When it
+ * returns VG_OK all files are on the disk. On rank 0. */
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err);
 
 #endif

@@ -102,13 +102,14 @@ json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
   if (ok && r->outputs) json_object_set_new(o, "files", files_json(r));
   json_object_set_new(
     o, "seconds",
-    json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "read",
+    json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "read",
               r->time.read, "check", r->time.check, "sizes", r->run->time_size,
               "layers", r->run->time_layers, "fill", r->run->time_fill,
               "number", r->run->partition.number, "judge", r->run->time_judge,
               "parts", r->run->time_parts, "write", r->time.write, "digest",
-              r->time.digest, "pictures", r->run->pictures.time + r->time.page,
-              "total", vg_display_now() - r->time.start));
+              r->time.digest, "sync", r->time.sync, "pictures",
+              r->run->pictures.time + r->time.page, "total",
+              vg_display_now() - r->time.start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(r->run->memory > 0 ? r->run->memory
                                                    : vg_report_peak_memory()));

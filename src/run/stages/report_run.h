@@ -9,7 +9,7 @@
 /** Wall-clock seconds of the steps that struct vg_run does not measure. */
 struct vg_run_times {
   double start; /* Of vg_display_now. */
-  double read, check, write, digest, page;
+  double read, check, write, digest, sync, page;
   double total; /* From the start to the printed report. The terminal and the
                    log print the same value. */
 };

@@ -1,84 +1,80 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-# The hidden folder of a run that was killed is removed by the next run, which
-# says so. The folder of a run that is alive stays.
+# Two runs that write the same names into a folder: the second is refused. The
+# hidden folder of a run that was killed is removed by the next run, which says
+# so. The folder of a run that is alive stays.
 vanguard demo box --cells 200000 --out p
 vanguard demo box --cells 2000 --out small
+vanguard demo box --cells 2000 --out other
+for file in other/box.*; do mv "$file" "other/pot.${file#other/box.}"; done
+hidden=o/.vanguard-box
 
-# hidden: the hidden folders in o.
-hidden() { find o -maxdepth 1 -name '.vanguard-*' 2>/dev/null; }
-
-# start ARGS...: a run in the background whose hidden folder is locked.
+# start ARGS...: a run in the background that has locked its hidden folder.
 start() {
   "$program" "$@" >out 2>err </dev/null &
   job=$!
   for _ in $(seq 3000); do
-    left=$(hidden)
-    if [ -n "$left" ] && [ -e "$left/lock" ]; then break; fi
+    [ ! -e $hidden/new ] || break
     sleep 0.01
   done
-  left=$(hidden)
-  [ -n "$left" ] || fail "no hidden folder"
+  exists $hidden/new
 }
 
-# killed ARGS...: a run that ends by SIGKILL while it writes. Sets $left.
+# killed ARGS...: a run that ends by SIGKILL while it writes files.
 killed() {
   start "$@"
+  for _ in $(seq 3000); do
+    [ -z "$(ls -A $hidden/new 2>/dev/null)" ] || break
+    sleep 0.01
+  done
   kill -KILL $job
   wait $job 2>/dev/null
-  exists "$left/lock"
+  exists $hidden/lock
 }
 
 killed mesh -q -t 1 -p p/box --out o --run-dir run
 vanguard mesh -q -t 1 -p p/box --out o --run-dir run --resume
 exits 0
-says out "note: removed $left ("
+says out "note: removed $hidden ("
 says out "the incomplete files of a run that was killed"
-[ -z "$(hidden)" ] || fail "left behind: $(hidden)"
+absent $hidden
 [ "$(ls -A o)" = "$(cd o && ls -A box.*)" ] || fail "other files: $(ls -A o)"
 
-# vanguard surface and the JSON report mention it too.
+# Runs of other projects, and the JSON report, mention it too.
 rm -rf o
 killed mesh -q -t 1 -p p/box --out o
-vanguard mesh -q --json -p small/box --out o
+vanguard mesh -q --json -p other/pot --out o
 exits 0
-says out "removed $left ("
-[ -z "$(hidden)" ] || fail "left behind: $(hidden)"
+says out "removed $hidden ("
+absent $hidden
 
-# A run that is alive keeps its folder, and completes.
+# A run that is alive keeps its folder and completes. A second one with the same
+# names is refused, and one with other names is not.
 rm -rf o
 start mesh -q -t 1 -p p/box --out o
 kill -STOP $job
-"$program" mesh -q -p small/box --out o --write vtu >other 2>&1 ||
-  fail "$(cat other)"
-lacks other ".vanguard-"
-exists "$left/lock"
+"$program" mesh -q -p small/box --out o --write vtu >other.out 2>&1
+status=$?
+exits 1
+says other.out "o: another run is writing box.* to this folder"
+says other.out "host $(hostname), process $job, started 2"
+"$program" surface -q small/box --out o >other.out 2>&1
+status=$?
+exits 1
+says other.out "process $job, started 2"
+"$program" mesh -q -p other/pot --out o --write vtu >other.out 2>&1 ||
+  fail "$(cat other.out)"
+lacks other.out ".vanguard-"
+exists $hidden/lock o/pot.vtu
 kill -CONT $job
 wait $job
 status=$?
 exits 0
-[ -z "$(hidden)" ] || fail "left behind: $(hidden)"
-
-# It is not certain that a run on another host has ended, until its folder has
-# not changed for a day.
-rm -rf o
-killed mesh -q -t 1 -p p/box --out o
-printf 'elsewhere\n1\n' >"$left/lock"
-vanguard mesh -q -p small/box --out o
-exits 0
-says out "note: $left ("
-says out "but that run was on another host; remove it if no run writes to"
-exists "$left"
-find "$left" -exec touch -d '2 days ago' {} +
-vanguard mesh -q -p small/box --out o
-exits 0
-says out "note: removed $left ("
-absent "$left"
+absent $hidden
+exists o/box.b8.ugrid
 
 # A folder without a lock, and folders with other names, stay.
-mkdir -p o/.vanguard-Ab3dEf o/.vanguard-notes o/.vanguard-Ab3dEf/files
+mkdir -p o/.vanguard-Ab3dEf/files o/.vanguard-notes
 vanguard mesh -q -p small/box --out o
 exits 0
-says out "note: o/.vanguard-Ab3dEf ("
-says out "it has no lock that this user can open"
-lacks out ".vanguard-notes"
+lacks out ".vanguard-"
 exists o/.vanguard-Ab3dEf/files o/.vanguard-notes

@@ -92,7 +92,7 @@ vanguard partition -q one/wing-half.b8.ugrid -n 2 --write stl
 exits 2
 vanguard partition -q one/wing-half.b8.ugrid -n 2 --out no/folder/x
 exits 1
-says err "no/folder/x.part.2"
+says err "no/folder: cannot write in this folder"
 # shellcheck disable=SC2086
 vanguard mesh -q -p p/wing-half $layers --solver-parts 9999999 \
   --write b8.ugrid --out many
