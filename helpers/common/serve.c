@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/child.h"
+#include "base/helper/crash.h"
 
 #define N_MAX (1ull << 31) /* of points, triangles and holes */
 #define FIRST_BYTES 65536  /* of an array before any of it has arrived */
@@ -41,14 +42,11 @@ static void watch(void)
   signal(SIGPIPE, SIG_IGN);
 }
 
-/* A library that crashes is expected, and ends the process at once. Sanitizers
- * have handlers that would compose a report, which nobody reads. */
-static void crash_at_once(void)
+/* Faults that a sanitizer detects are crashes, too. */
+__attribute__((visibility("default"))) const char *__asan_default_options(void);
+const char *__asan_default_options(void)
 {
-  static const int signals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
-
-  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
-    signal(signals[i], SIG_DFL);
+  return "abort_on_error=1:detect_leaks=0";
 }
 
 static void introduce(const char *name, const char *library, const char *source)
@@ -87,7 +85,7 @@ void vg_serve_start(int argc, char **argv, const char *name,
             name, library);
     exit(is_asked ? 0 : 2);
   }
-  crash_at_once();
+  vg_helper_answer_crashes(STDOUT_FILENO);
   watch();
   introduce(name, library, source);
 }

@@ -5,6 +5,7 @@
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <sched.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
@@ -376,8 +377,14 @@ void vg_comm_close(struct vg_comm *c)
   leave(c);
 }
 
-void vg_comm_abort(struct vg_comm *c, int exit_status)
+void vg_comm_abort(struct vg_comm *c, int exit_status, const char *why)
 {
+  char text[300];
+  int n = snprintf(text, sizeof text, "rank %d: %s\n", vg_comm_rank(c), why);
+
+  if (n >= (int)sizeof text) n = sizeof text - 1;
+  while (write(STDERR_FILENO, text, (size_t)n) < 0 && errno == EINTR) {
+  }
   if (c) MPI_Abort(c->all, exit_status);
   _exit(exit_status);
 }

@@ -57,9 +57,9 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 void vg_comm_close(struct vg_comm *c);
 
 /** End all ranks at once with this exit status, after an error that no rank can
- * handle. Prints nothing (the launcher may) and flushes nothing. Does not
- * return. */
-void vg_comm_abort(struct vg_comm *c, int exit_status)
+ * handle. Writes "rank N: WHY" to standard error, because no caller remains
+ * that could, and flushes nothing. Does not return. */
+void vg_comm_abort(struct vg_comm *c, int exit_status, const char *why)
   __attribute__((noreturn));
 
 int vg_comm_rank(const struct vg_comm *c);

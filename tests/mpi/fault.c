@@ -36,7 +36,7 @@ int main(int argc, char **argv)
   }
   if (!strcmp(argv[1], "leave")) return leave(c);
   if (vg_comm_rank(c) == vg_comm_size(c) - 1) {
-    if (!strcmp(argv[1], "abort")) vg_comm_abort(c, 7);
+    if (!strcmp(argv[1], "abort")) vg_comm_abort(c, 7, "out of luck");
     raise(SIGKILL);
   }
   vg_comm_sum(c, 1, &v, &err);

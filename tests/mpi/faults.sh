@@ -16,6 +16,8 @@ check() { # WHAT EXPECTED_STATUS
 mpirun=$1
 flag=${2:--n}
 check abort 7
+timeout 30 "$mpirun" "$flag" 2 "$program" abort 2>&1 |
+  grep -q "rank 1: out of luck" || { echo "abort: no text"; bad=1; }
 check kill 137
 check leave 0
 

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/child.h"
+#include "base/helper/crash.h"
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
@@ -77,12 +78,12 @@ static const struct vg_mesher *load(const char *name, char *why, size_t size)
 
 /* --- a void --------------------------------------------------------------- */
 
-/* A limit of processor time ends meshers that do not terminate. */
+/* A limit of processor time, after which vg_helper_answer_crashes ends meshers
+ * that do not terminate. */
 static void set_end(double seconds)
 {
   struct itimerval t = { { 0, 0 }, { (time_t)seconds + 1, 0 } };
 
-  signal(SIGPROF, SIG_DFL);
   setitimer(ITIMER_PROF, &t, NULL);
 }
 
@@ -121,6 +122,7 @@ __attribute__((noreturn)) static void fill(int fd, const struct vg_mesher *m,
   struct vg_mesher_sizes sizes = { vg_child_sizes_at, NULL };
   struct vg_mesher_front front;
 
+  vg_helper_answer_crashes(fd);
   set_end(job->value[0]);
   if (!get_front(fd, job, &front)) _exit(1);
   sizes.user = vg_child_sizes_new(fd, fd, &front);

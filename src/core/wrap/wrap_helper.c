@@ -56,6 +56,9 @@ static vg_status refuse(struct request *r, struct vg_error *err)
     return vg_fail(err, VG_ERR_INPUT,
                    "the surface cannot be wrapped: all triangles are "
                    "degenerate");
+  case VG_HELPER_CRASHED:
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "CGAL crashed on the surface; take a larger size");
   default:
     return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: %s",
                    text);
@@ -64,19 +67,7 @@ static vg_status refuse(struct request *r, struct vg_error *err)
 
 static vg_status explain(const struct request *r, struct vg_error *err)
 {
-  switch (r->link.state) {
-  case VG_LINK_STOPPED: return vg_stopped(r->link.stop, err);
-  case VG_LINK_NO_MEMORY: return vg_fail_memory(err, "a wrap");
-  case VG_LINK_SILENT:
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "vanguard-wrap did not answer for %d seconds and was ended; "
-                   "take a larger size",
-                   SILENCE);
-  default:
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "vanguard-wrap ended before it answered, because CGAL "
-                   "crashed or the memory was exhausted; take a larger size");
-  }
+  return vg_helper_lost(&r->link, 0, "vanguard-wrap", err);
 }
 
 /* Start a helper and send it a request. */
@@ -106,14 +97,12 @@ static vg_status receive(struct request *r, uint32_t what, struct vg_error *err)
   if (!vg_link_get(&r->link, &r->m, sizeof r->m)) return explain(r, err);
   if (r->m.what == VG_HELPER_FAILED) return refuse(r, err);
   if (r->m.what == what || r->m.what == VG_HELPER_PROGRESS) return VG_OK;
-  return vg_fail(err, VG_ERR_GEOMETRY,
-                 "vanguard-wrap sent an answer that this program does not "
-                 "know; install the helper of this version of Vanguard");
+  return explain(r, err);
 }
 
 static vg_status damaged(struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_GEOMETRY,
+  return vg_fail(err, VG_ERR_IO,
                  "the answer of vanguard-wrap is damaged: counts or indices "
                  "are out of range");
 }
