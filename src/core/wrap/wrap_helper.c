@@ -17,6 +17,7 @@
 /* A request, and the process that answers it. */
 struct request {
   struct vg_helper_message m;
+  uint64_t most; /* points of a wrap */
   struct vg_child child;
   struct vg_link link;
 };
@@ -49,9 +50,9 @@ static vg_status refuse(struct request *r, struct vg_error *err)
     return vg_fail_memory(err, "a wrap; take a larger size");
   case VG_HELPER_TOO_MANY:
     return vg_fail(err, VG_ERR_INPUT,
-                   "a wrap was stopped at %.2g triangles before it was "
-                   "complete: take a larger size",
-                   VG_WRAP_MOST);
+                   "a wrap was stopped at %llu points before it was complete: "
+                   "take a larger size",
+                   (unsigned long long)r->most);
   case VG_HELPER_DEGENERATE:
     return vg_fail(err, VG_ERR_INPUT,
                    "the surface cannot be wrapped: all triangles are "
@@ -132,9 +133,11 @@ vg_status vg_wrap_cgal(const struct vg_mesh *m, const struct vg_wrap_options *o,
                        size_t expected, struct vg_mesh *out,
                        struct vg_error *err)
 {
-  struct request r = { .m = {
+  const uint64_t most = o->most ? o->most : (uint64_t)(VG_WRAP_MOST / 2);
+  struct request r = { .most = most,
+                       .m = {
                          .what = VG_HELPER_WRAP,
-                         .n = { 0, 0, (uint64_t)(VG_WRAP_MOST / 2) },
+                         .n = { 0, 0, most },
                          .value = { o->size, o->size * VG_WRAP_OFFSET } } };
   vg_status st = ask(&r, m, 0, NULL, &o->stop, err);
 
