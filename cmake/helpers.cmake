@@ -27,8 +27,7 @@ function(vg_helper name folder)
       -DFOLDERS=${folder},common -DOUT=${digest}
       -P ${PROJECT_SOURCE_DIR}/cmake/source_digest.cmake
     DEPENDS ${own} cmake/source_digest.cmake)
-  add_executable(${name} ${own} ${digest} src/base/child_bytes.c
-    src/base/helper/crash.c ${ARGN})
+  add_executable(${name} ${own} ${digest} src/base/child_bytes.c ${ARGN})
   target_link_libraries(${name} PRIVATE vg_flags)
   target_include_directories(${name} PRIVATE helpers)
   set_target_properties(${name} PROPERTIES

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include "base/child.h"
-#include "base/helper/crash.h"
 
 #define N_MAX (1ull << 31) /* of points, triangles and holes */
 #define FIRST_BYTES 65536  /* of an array before any of it has arrived */
@@ -66,6 +65,10 @@ static void introduce(const char *name, const char *library, const char *source)
 void vg_serve_start(int argc, char **argv, const char *name,
                     const char *library, const char *source)
 {
+  static const struct vg_helper_message crash = { .what = VG_HELPER_FAILED,
+                                                  .option = VG_HELPER_CRASHED };
+  static const struct vg_helper_message time = { .what = VG_HELPER_FAILED,
+                                                 .option = VG_HELPER_TIME };
   const char *first = argc > 1 ? argv[1] : "";
 
   if (!strcmp(first, "--version")) {
@@ -85,7 +88,7 @@ void vg_serve_start(int argc, char **argv, const char *name,
             name, library);
     exit(is_asked ? 0 : 2);
   }
-  vg_helper_answer_crashes(STDOUT_FILENO);
+  vg_child_answer_crashes(STDOUT_FILENO, &crash, &time, sizeof crash);
   watch();
   introduce(name, library, source);
 }

@@ -199,7 +199,7 @@ void give_cells(const tetgenio &out, const vg_mesher_front &f)
   vg_serve_put_array(cell.data(), cell.size() * sizeof(int));
 }
 
-/* A limit of processor time, after which vg_helper_answer_crashes ends this
+/* A limit of processor time, after which vg_child_answer_crashes ends this
  * process. */
 void set_end(double seconds)
 {

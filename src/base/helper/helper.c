@@ -326,8 +326,6 @@ vg_status vg_helper_lost(const struct vg_link *l, uint32_t cause,
                    "%s reached its limit of processor time; select "
                    "another mesher",
                    who);
-  if (cause == VG_HELPER_CRASHED)
-    return vg_fail(err, VG_ERR_IO, "%s crashed", who);
   return vg_fail(err, VG_ERR_IO,
                  "%s sent an answer that this program does not know", who);
 }

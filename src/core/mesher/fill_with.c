@@ -279,7 +279,8 @@ static vg_status run_job(struct filling *f, struct vg_error *err)
   f->outcome = w.what == VG_HELPER_NONE ? FAILED : CRASHED;
   if (f->outcome == FAILED) return VG_OK;
   if (w.what != VG_HELPER_FAILED) w.option = 0;
-  if (w.option == VG_HELPER_CRASHED && f->n_crash++) return VG_OK;
+  if (w.option == VG_HELPER_CRASHED)
+    return f->n_crash++ ? VG_OK : VG_BLOCKED; /* it must happen twice */
   return vg_helper_lost(f->link, w.option, f->pool->spec.name, err);
 }
 
@@ -359,7 +360,9 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
   if (!front->n_face) return VG_OK;
   if (p->is_helper) VG_TRY(find_holes(front, &f.n_hole, &f.hole, err));
-  VG_TRY(vg_helper_repeat(attempt, &f, &options->stop, err));
+  do st = vg_helper_repeat(attempt, &f, &options->stop, err);
+  while (st == VG_BLOCKED);
+  if (st < 0) goto done;
   st = VG_NOT_BETTER;
   switch (f.outcome) {
   case FILLED: st = judge(&f, out, report, err); break;

@@ -77,7 +77,8 @@ vg_status vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from,
     return take_cells(job, from, &a, err);
   if (is_there && a.what == VG_HELPER_NONE) return VG_BLOCKED;
   if (a.what != VG_HELPER_FAILED) a.option = 0;
-  if (a.option == VG_HELPER_CRASHED && job->n_crash++) return VG_BLOCKED;
+  if (a.option == VG_HELPER_CRASHED)
+    return job->n_crash++ ? VG_BLOCKED : VG_NOT_BETTER;
   return vg_helper_lost(from, a.option, "vanguard-tetgen", err);
 }
 
@@ -101,7 +102,7 @@ static vg_status run_helper(void *user, struct vg_error *err)
     st = ask(&j->job[j->next], j->way, &l)
          ? vg_cdt_receive(&j->job[j->next], &l, err)
          : vg_helper_lost(&l, 0, "vanguard-tetgen", err);
-    if (st >= 0) j->next++;
+    if (st == VG_OK || st == VG_BLOCKED) j->next++;
   }
   vg_helper_close(&c);
   return st < 0 ? st : VG_OK;

@@ -41,8 +41,8 @@ vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
 
 /** Receive the answer to a job and store it there. VG_BLOCKED: TetGen failed,
- * and the helper ends. VG_ERR_MEMORY, VG_ERR_IO: there is no valid answer, or
- * the first crash of this job. */
+ * and the helper ends; VG_NOT_BETTER: so does a crash, which must happen twice.
+ * VG_ERR_MEMORY, VG_ERR_IO: there is no valid answer. */
 vg_status vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from,
                          struct vg_error *err);
 

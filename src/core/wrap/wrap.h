@@ -120,7 +120,7 @@ vg_status vg_wrap_foresee(const struct vg_mesh *m,
  *
  * @param point  out: its index
  * @param tri    out: a triangle with it
- * Returns 1, 0 if there is none, or -1 if memory is refused. O(n). */
+ * Returns 1, 0 without such a point, or -1 if memory is refused. O(n). */
 int vg_wrap_far_point(const struct vg_mesh *m, uint32_t *point, size_t *tri);
 
 /** Find a size at which vg_wrap succeeds: about 10,000 triangles, or fewer if

@@ -102,7 +102,7 @@ VG_ROW(REAL, cad, angle, "cad_angle", 0,
   "circle); 0: 8 if the surface is remeshed, else 15")
 VG_ROW(REAL, cad, seconds, "cad_seconds", cad.seconds,
   .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "s", .help = "Time limit for "
-  "reading a CAD file; 0: none")
+  "reading a CAD file; 0: 360 s and 60 s per megabyte of the file")
 VG_ROW(REAL, plain, weld, "weld", 0,
   .topic = VG_TOPIC_SURFACE,
   LENGTH, .help = "Merge points that are closer than this distance; 0: merge "
