@@ -55,6 +55,35 @@ vanguard mesh -q -p p/box --write lb8.ugrid --out r2 --run-dir run --resume
 exits 1
 says err "vanguard-tetgen was"
 
+# A helper that is killed while it works, as if memory had run out, ends the run.
+# The repeated run has the same mesh.
+mkdir mortal
+cat >mortal/vanguard-tetgen <<END
+#!/bin/sh
+if [ -e "$PWD/kill" ]; then
+  "$bin/vanguard-tetgen" --serve </dev/null
+  kill -KILL \$\$
+fi
+exec "$bin/vanguard-tetgen" --serve
+END
+chmod +x mortal/vanguard-tetgen
+for turn in dies resumes; do
+  rm -f kill
+  resume=
+  if [ $turn = dies ]; then touch kill; else resume=--resume; fi
+  vanguard mesh -q -p p/box --helpers mortal --mesher tetgen --leaf-cells 500 \
+    --write lb8.ugrid --out mortal --run-dir kept $resume
+  [ $turn = resumes ] && exits 0 && break
+  exits 1
+  says err "tetgen ended without an answer"
+  says err "finished tasks are kept in kept"
+  absent mortal/box.lb8.ugrid
+done
+vanguard mesh -q -p p/box --helpers "a folder" --mesher tetgen --leaf-cells 500 \
+  --write lb8.ugrid --out straight
+exits 0
+same straight/box.lb8.ugrid mortal/box.lb8.ugrid
+
 # Ranks must have the same helpers, also on one node.
 if mpirun -n 2 true >/dev/null 2>&1; then
   mpirun -n 1 "$program" mesh -q -p p/box --write lb8.ugrid --out d : \
