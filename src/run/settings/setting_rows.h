@@ -179,6 +179,10 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
   .keeps_mesh = 1, .hi = 9e15, .unit = "cells", .help = "Stop if the "
   "mesh, including its layers, would have more cells than "
         "this; 0: no limit")
+VG_ROW(REAL, plain, rank_silence, "rank_silence", 60,
+  .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "s", .help = "End the run if a "
+  "rank gives no sign of life for this time, because its node or the network "
+  "has failed; 0: never")
 VG_ROW(REAL, plain, max_memory, "max_memory", 0,
   .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "GB", .help = "Memory that all "
   "ranks of a node may use together. The run ends before the fill if its "

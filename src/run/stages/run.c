@@ -88,6 +88,7 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   uint64_t is_on = 0;
   vg_status st = VG_OK;
 
+  VG_TRY(vg_comm_watch(r->comm, p->asked.rank_silence, err));
   VG_TRY(vg_run_helpers(r->comm, err));
   if (leads_node(r)) st = shape_surface(r, p, show, err);
   VG_TRY(vg_problem_share(p, r->comm, leads_node(r), st, err));
