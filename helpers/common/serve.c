@@ -41,14 +41,11 @@ static void watch(void)
   signal(SIGPIPE, SIG_IGN);
 }
 
-/* A library that crashes is expected, and ends the process at once. Sanitizers
- * have handlers that would compose a report, which nobody reads. */
-static void crash_at_once(void)
+/* Faults that a sanitizer detects are crashes, too. */
+__attribute__((visibility("default"))) const char *__asan_default_options(void);
+const char *__asan_default_options(void)
 {
-  static const int signals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
-
-  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
-    signal(signals[i], SIG_DFL);
+  return "abort_on_error=1:detect_leaks=0";
 }
 
 static void introduce(const char *name, const char *library, const char *source)
@@ -68,6 +65,10 @@ static void introduce(const char *name, const char *library, const char *source)
 void vg_serve_start(int argc, char **argv, const char *name,
                     const char *library, const char *source)
 {
+  static const struct vg_helper_message crash = { .what = VG_HELPER_FAILED,
+                                                  .option = VG_HELPER_CRASHED };
+  static const struct vg_helper_message time = { .what = VG_HELPER_FAILED,
+                                                 .option = VG_HELPER_TIME };
   const char *first = argc > 1 ? argv[1] : "";
 
   if (!strcmp(first, "--version")) {
@@ -87,7 +88,7 @@ void vg_serve_start(int argc, char **argv, const char *name,
             name, library);
     exit(is_asked ? 0 : 2);
   }
-  crash_at_once();
+  vg_child_answer_crashes(STDOUT_FILENO, &crash, &time, sizeof crash);
   watch();
   introduce(name, library, source);
 }

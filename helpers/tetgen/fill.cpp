@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include <signal.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -200,7 +199,8 @@ void give_cells(const tetgenio &out, const vg_mesher_front &f)
   vg_serve_put_array(cell.data(), cell.size() * sizeof(int));
 }
 
-/* A limit of processor time ends this process. */
+/* A limit of processor time, after which vg_child_answer_crashes ends this
+ * process. */
 void set_end(double seconds)
 {
   itimerval t = {};
@@ -208,7 +208,6 @@ void set_end(double seconds)
   t.it_value.tv_sec = static_cast<time_t>(seconds > 0 && seconds < 1e9 ? seconds
                                                                        : 0) +
                       1;
-  signal(SIGPROF, SIG_DFL);
   setitimer(ITIMER_PROF, &t, nullptr);
 }
 

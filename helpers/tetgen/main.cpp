@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* vanguard-tetgen: TetGen as a helper program of Vanguard. */
-#include <exception>
+#include <new>
 
 #include <unistd.h>
 
@@ -10,6 +10,8 @@ extern "C" const char vg_source_digest[];
 
 namespace
 {
+
+const int no_memory = 1; /* thrown by TetGen; other numbers are failures */
 
 /* Returns false if the process cannot go on. TetGen starts from another state
  * after a void, so that a process fills only one. */
@@ -21,15 +23,17 @@ bool answer(const vg_helper_message &m)
   if (m.what != VG_HELPER_RECOVER && m.what != VG_HELPER_FILL) return false;
   if (!vg_serve_surface_read(STDIN_FILENO, &m, &s)) return false;
   try {
-    if (m.what == VG_HELPER_RECOVER) good = vg_tetgen_recover(m.option, s);
-    else if (!vg_tetgen_fill(m.value[0], s))
-      vg_serve_put(VG_HELPER_NONE, 0, 0, 0);
-  } catch (...) { /* TetGen throws integers */
-    if (m.what == VG_HELPER_FILL) vg_serve_put(VG_HELPER_NONE, 0, 0, 0);
-    good = false;
+    good = m.what == VG_HELPER_RECOVER ? vg_tetgen_recover(m.option, s)
+                                       : vg_tetgen_fill(m.value[0], s);
+    if (!good) vg_serve_put(VG_HELPER_NONE, 0, 0, 0);
+  } catch (const std::bad_alloc &) {
+    vg_serve_fail(VG_HELPER_NO_MEMORY, "");
+  } catch (int what) {
+    if (what == no_memory) vg_serve_fail(VG_HELPER_NO_MEMORY, "");
+    else vg_serve_put(VG_HELPER_NONE, 0, 0, 0);
   }
   vg_serve_surface_release(&s);
-  return good;
+  return good && m.what == VG_HELPER_RECOVER;
 }
 
 } // namespace

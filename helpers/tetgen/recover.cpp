@@ -23,22 +23,29 @@ namespace
 const uint64_t call_limit = 20000000, call_limit_per_triangle = 50000; /* K4 */
 
 /* TetGen may also loop forever without calling a predicate. A job is therefore
- * aborted, too, if it uses this many seconds of processor time, plus this many
- * per triangle, without a call. Otherwise there are millions of calls per
+ * aborted, too, if it computes for this many seconds, plus this many per
+ * triangle, without a call. Time in the kernel, which may be short of memory,
+ * does not count. Otherwise there are millions of calls per
  * second, so the clock only stops jobs that would never end. */
 const double silence = 2, silence_each = 1e-4;
 
 /* Calls left to the current job, and their number at the last check. */
 volatile uint64_t calls_left = UINT64_MAX, calls_seen;
 
+void give_up()
+{
+  vg_serve_put(VG_HELPER_NONE, 0, 0, 0);
+  _exit(1);
+}
+
 void count_call()
 {
-  if (!(calls_left = calls_left - 1)) _exit(1);
+  if (!(calls_left = calls_left - 1)) give_up();
 }
 
 void look(int)
 {
-  if (calls_left == calls_seen) _exit(1);
+  if (calls_left == calls_seen) give_up();
   calls_seen = calls_left;
 }
 
@@ -60,7 +67,9 @@ void give_output(const tetgenio &out, size_t n)
 {
   const uint64_t n_added = static_cast<uint64_t>(out.numberofpoints) - n;
   const uint64_t n_tet = static_cast<uint64_t>(out.numberoftetrahedra);
+  const itimerval never = {};
 
+  setitimer(ITIMER_VIRTUAL, &never, nullptr); /* one answer only */
   vg_serve_put(VG_HELPER_CELLS, 0, n_added, n_tet);
   vg_serve_put_array(out.pointlist + 3 * n, 3 * n_added * sizeof(REAL));
   vg_serve_put_array(out.tetrahedronlist, 4 * n_tet * sizeof(int));
@@ -107,11 +116,11 @@ void be_patient(size_t n_tri)
 
   calls_left = call_limit + call_limit_per_triangle * n_tri;
   calls_seen = 0;
-  signal(SIGPROF, look);
+  signal(SIGVTALRM, look);
   time.it_value.tv_sec = static_cast<time_t>(
     silence + silence_each * static_cast<double>(n_tri));
   time.it_interval = time.it_value;
-  setitimer(ITIMER_PROF, &time, nullptr);
+  setitimer(ITIMER_VIRTUAL, &time, nullptr);
 }
 
 } // namespace

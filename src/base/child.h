@@ -75,6 +75,13 @@ void vg_child_close(struct vg_child *c);
 int vg_child_put(int fd, const void *data, size_t size);
 int vg_child_get(int fd, void *data, size_t size);
 
+/** From now on, send `size` bytes over fd before this process ends by SIGSEGV,
+ * SIGBUS, SIGFPE, SIGILL or SIGABRT (`crash`) or by SIGPROF (`time`; NULL: not
+ * for this signal). A crash is thus an answer about the input, since it happens
+ * again, while a process that ends without a word was ended from outside. */
+void vg_child_answer_crashes(int fd, const void *crash, const void *time,
+                             size_t size);
+
 #ifdef __cplusplus
 }
 #endif

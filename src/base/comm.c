@@ -5,6 +5,7 @@
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <sched.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
@@ -17,6 +18,7 @@
 #include "base/library.h"
 #include "base/memory.h"
 
+#define ABORT_SECONDS 10 /* for MPI to end a job */
 /* Bytes per MPI call: far below the 2^31 limit of its counts. */
 #define CHUNK ((size_t)1 << 28)
 
@@ -272,6 +274,7 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 
 static void leave(struct vg_comm *c)
 {
+  vg_comm_watch_end(c);
   vg_comm_messages_release(c);
   if (c->node != MPI_COMM_NULL) MPI_Comm_free(&c->node);
   if (c->message_comm != MPI_COMM_NULL) MPI_Comm_free(&c->message_comm);
@@ -376,9 +379,19 @@ void vg_comm_close(struct vg_comm *c)
   leave(c);
 }
 
-void vg_comm_abort(struct vg_comm *c, int exit_status)
+void vg_comm_abort(struct vg_comm *c, int exit_status, const char *why)
 {
-  if (c) MPI_Abort(c->all, exit_status);
+  char text[300];
+  int is_up = 0;
+  int n = c ? snprintf(text, sizeof text, "rank %d: %s\n", c->rank, why)
+            : snprintf(text, sizeof text, "%s\n", why);
+
+  if (n >= (int)sizeof text) n = sizeof text - 1;
+  while (write(STDERR_FILENO, text, (size_t)n) < 0 && errno == EINTR) {
+  }
+  alarm(ABORT_SECONDS); /* the launcher may be unreachable */
+  MPI_Initialized(&is_up);
+  if (is_up) MPI_Abort(c ? c->all : MPI_COMM_WORLD, exit_status);
   _exit(exit_status);
 }
 

@@ -57,10 +57,17 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 void vg_comm_close(struct vg_comm *c);
 
 /** End all ranks at once with this exit status, after an error that no rank can
- * handle. Prints nothing (the launcher may) and flushes nothing. Does not
- * return. */
-void vg_comm_abort(struct vg_comm *c, int exit_status)
+ * handle. Writes "rank N: WHY" to standard error, because no caller remains
+ * that could, and flushes nothing. Does not return. */
+void vg_comm_abort(struct vg_comm *c, int exit_status, const char *why)
   __attribute__((noreturn));
+
+/** From now on until vg_comm_close, every rank gives signs of life to rank 0
+ * and rank 0 to every rank. If none arrives for this time, vg_comm_abort ends
+ * the rank that waits, and names the silent one. 0, or a debugger at any rank:
+ * does nothing. Collective. */
+vg_status vg_comm_watch(struct vg_comm *c, double seconds,
+                        struct vg_error *err);
 
 int vg_comm_rank(const struct vg_comm *c);
 int vg_comm_size(const struct vg_comm *c);

@@ -157,6 +157,17 @@ static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
 
 /* --- incoming ------------------------------------------------------------ */
 
+/* The message is delivered without data, so that its receiver knows that it was
+ * lost. */
+static vg_status lose(struct vg_incoming *a, struct vg_error *err)
+{
+  free(a->message.bytes.data);
+  free(a->request);
+  a->message.bytes.data = NULL;
+  a->request = NULL;
+  return vg_fail_memory(err, "a message from another rank");
+}
+
 /* Receive the parts of an announced message. They arrive in the order of the
  * announcements. */
 static vg_status start_long(struct vg_comm *c, struct vg_incoming *a,
@@ -170,8 +181,10 @@ static vg_status start_long(struct vg_comm *c, struct vg_incoming *a,
   b->n = (size_t)n;
   b->data = vg_alloc(b->n, 1);
   a->request = vg_alloc(b->n / c->chunk + 1, sizeof *a->request);
-  if (!b->data || !a->request)
-    return vg_fail_memory(err, "a message from another rank");
+  /* the parts of a lost message are not received, so that no later parts can be
+   * told from them */
+  c->has_lost_parts |= !b->data || !a->request;
+  if (c->has_lost_parts) return lose(a, err);
   for (size_t at = 0; at < b->n; at += c->chunk) {
     size_t m = b->n - at < c->chunk ? b->n - at : c->chunk;
 
@@ -192,13 +205,16 @@ static vg_status start_short(struct vg_incoming *a, MPI_Message *handle,
   if (rc) return vg_comm_fail(err, "cannot receive a message", rc);
   b->n = (size_t)n;
   b->data = vg_alloc(b->n, 1);
-  a->request = vg_alloc(1, sizeof *a->request);
-  if (!b->data || !a->request)
-    return vg_fail_memory(err, "a message from another rank");
-  rc = MPI_Imrecv(b->data, n, MPI_BYTE, handle, a->request);
+  if (!b->data) return lose(a, err);
+  rc = MPI_Imrecv(b->data, n, MPI_BYTE, handle, &a->one);
   if (rc) return vg_comm_fail(err, "cannot receive a message", rc);
   a->n_request = 1;
   return VG_OK;
+}
+
+static MPI_Request *requests_of(struct vg_incoming *a)
+{
+  return a->request ? a->request : &a->one;
 }
 
 /* Open MPI may detect a message during an unsuccessful probe, and report it
@@ -257,7 +273,8 @@ static vg_status take(struct vg_comm *c, struct vg_message *m,
     int is_whole = 0, rc;
 
     if (is_overtaking(c, i)) continue;
-    rc = MPI_Testall(a->n_request, a->request, &is_whole, MPI_STATUSES_IGNORE);
+    rc = MPI_Testall(a->n_request, requests_of(a), &is_whole,
+                     MPI_STATUSES_IGNORE);
     if (rc) return vg_comm_fail(err, "cannot receive a message", rc);
     if (!is_whole) continue;
     *m = a->message;
@@ -331,7 +348,7 @@ void vg_comm_messages_release(struct vg_comm *c)
   for (int i = 0; i < c->n_incoming; i++) {
     struct vg_incoming *a = &c->incoming[i];
 
-    if (vg_comm_cancel_receives(a->n_request, a->request)) continue;
+    if (vg_comm_cancel_receives(a->n_request, requests_of(a))) continue;
     free(a->message.bytes.data);
     free(a->request);
   }

@@ -33,7 +33,8 @@ struct vg_self_message; /* a message from this rank to itself */
 
 struct vg_incoming {
   struct vg_message message;
-  MPI_Request *request; /* [n_request] */
+  MPI_Request one;      /* of a short message */
+  MPI_Request *request; /* [n_request] of a long one; else NULL */
   int n_request;
 };
 
@@ -65,7 +66,12 @@ struct vg_comm {
                         the polling thread */
   struct vg_incoming incoming[VG_INCOMING_MAX]; /* in order of arrival */
   int n_incoming;
+  int has_lost_parts;   /* no memory for a long message */
+  struct vg_life *life; /* NULL: no signs of life */
 };
+
+/** Ends the signs of life of this rank. */
+void vg_comm_watch_end(struct vg_comm *c);
 
 /** Fail with VG_ERR_REMOTE and MPI's description of the error rc. */
 vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc);

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Wakeups; see base/comm.h. MPI has no wait that sleeps, so a polling rank only
- * notices a message at its next poll. Therefore each rank of a node has a word
- * of shared memory on which it sleeps, and which another rank changes after it
- * has posted a message. */
+/* Wakeups and signs of life; see base/comm.h. MPI has no wait that sleeps, so a
+ * polling rank only notices a message at its next poll. Therefore each rank of
+ * a node has a word of shared memory on which it sleeps, and which another rank
+ * changes after it has posted a message. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <linux/futex.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/comm_parts.h"
 #include "base/memory.h"
 
@@ -99,4 +102,187 @@ void vg_comm_sleep(struct vg_comm *c, unsigned heard, double seconds)
   atomic_store(&b->sleeps, 1);
   syscall(SYS_futex, &b->count, FUTEX_WAIT, heard, &t, NULL, 0);
   atomic_store(&b->sleeps, 0);
+}
+
+/* --- signs of life -------------------------------------------------------- */
+
+/* Rank 0 exchanges signs with all other ranks. A thread of its own sends and
+ * receives them, so that a rank may compute for as long as it likes. */
+struct vg_life {
+  MPI_Comm comm;
+  int rank, size;
+  double limit;         /* seconds */
+  double *heard;        /* [size] time of the last sign; vg_clock() */
+  char (*host)[64];     /* [size] */
+  MPI_Request *request; /* [size] the sign to each rank */
+  pthread_t thread;
+  pthread_mutex_t lock;
+  pthread_cond_t end;
+  int is_running, ends;
+};
+
+static int is_partner(const struct vg_life *l, int r)
+{
+  return r != l->rank && (!l->rank || !r);
+}
+
+static void hear(struct vg_life *l, double now)
+{
+  MPI_Message handle;
+  MPI_Status status;
+  int is_there = 1;
+  char sign;
+
+  while (
+    !MPI_Improbe(MPI_ANY_SOURCE, 0, l->comm, &is_there, &handle, &status) &&
+    is_there) {
+    MPI_Mrecv(&sign, 1, MPI_CHAR, &handle, MPI_STATUS_IGNORE);
+    l->heard[status.MPI_SOURCE] = now;
+  }
+}
+
+static void give_signs(struct vg_life *l)
+{
+  static const char sign = 1;
+
+  for (int r = 0; r < l->size; r++) {
+    int is_sent = 1;
+
+    if (!is_partner(l, r)) continue;
+    MPI_Test(&l->request[r], &is_sent, MPI_STATUS_IGNORE);
+    if (is_sent) MPI_Isend(&sign, 1, MPI_CHAR, r, 0, l->comm, &l->request[r]);
+  }
+}
+
+static void end_if_silent(const struct vg_life *l, double now)
+{
+  char why[250];
+
+  for (int r = 0; r < l->size; r++) {
+    if (!is_partner(l, r) || now - l->heard[r] < l->limit) continue;
+    snprintf(why, sizeof why,
+             "rank %d on %s has given no sign of life for %g s, and the job "
+             "ends; tasks kept in a run directory (--run-dir) continue with "
+             "--resume",
+             r, l->host[r], l->limit);
+    vg_comm_abort(NULL, 1, why);
+  }
+}
+
+/* If this process was stopped itself, it forgives the others their silence. */
+static void *live(void *user)
+{
+  struct vg_life *l = user;
+  const double period = l->limit / 6;
+  double last = vg_clock();
+
+  pthread_mutex_lock(&l->lock);
+  while (!l->ends) {
+    struct timespec until;
+    double now;
+
+    give_signs(l);
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_sec += (time_t)period;
+    until.tv_nsec += (long)(1e9 * (period - (double)(time_t)period));
+    if (until.tv_nsec >= 1000000000)
+      until.tv_sec++, until.tv_nsec -= 1000000000;
+    pthread_cond_timedwait(&l->end, &l->lock, &until);
+    now = vg_clock();
+    for (int r = 0; r < l->size && now - last > 3 * period; r++)
+      l->heard[r] = now;
+    last = now;
+    hear(l, now);
+    if (!l->ends) end_if_silent(l, now);
+  }
+  pthread_mutex_unlock(&l->lock);
+  return NULL;
+}
+
+static int is_traced(void)
+{
+  FILE *from = fopen("/proc/self/status", "r");
+  char line[256];
+  int pid = 0;
+
+  while (from && fgets(line, sizeof line, from))
+    if (sscanf(line, "TracerPid: %d", &pid) == 1) break;
+  if (from) fclose(from);
+  return pid != 0;
+}
+
+static void life_free(struct vg_life *l)
+{
+  if (l->comm != MPI_COMM_NULL) MPI_Comm_free(&l->comm);
+  free(l->heard);
+  free(l->host);
+  free(l->request);
+  free(l);
+}
+
+static struct vg_life *life_new(const struct vg_comm *c, double limit)
+{
+  struct vg_life *l = vg_calloc(1, sizeof *l);
+  const double now = vg_clock();
+
+  if (!l) return NULL;
+  *l = (struct vg_life){
+    .comm = MPI_COMM_NULL, .rank = c->rank, .size = c->size, .limit = limit
+  };
+  l->heard = vg_alloc((size_t)l->size, sizeof *l->heard);
+  l->host = vg_calloc((size_t)l->size, sizeof *l->host);
+  l->request = vg_alloc((size_t)l->size, sizeof *l->request);
+  if (!l->heard || !l->host || !l->request) {
+    life_free(l);
+    return NULL;
+  }
+  for (int r = 0; r < l->size; r++) {
+    l->heard[r] = now;
+    l->request[r] = MPI_REQUEST_NULL;
+  }
+  gethostname(l->host[l->rank], sizeof *l->host - 1);
+  return l;
+}
+
+vg_status vg_comm_watch(struct vg_comm *c, double seconds, struct vg_error *err)
+{
+  struct vg_life *l;
+  uint64_t traced = (uint64_t)is_traced();
+  vg_status st;
+
+  assert(seconds >= 0);
+  if (!c || c->size == 1 || c->life || !(seconds > 0)) return VG_OK;
+  if ((st = vg_comm_sum(c, 1, &traced, err)) < 0 || traced) return st;
+  l = life_new(c, seconds);
+  st = vg_comm_agree(c, l ? VG_OK : vg_fail_memory(err, "signs of life"), err);
+  if (st >= 0 && (MPI_Comm_dup(c->all, &l->comm) ||
+                  MPI_Allgather(MPI_IN_PLACE, 0, MPI_CHAR, l->host,
+                                sizeof *l->host, MPI_CHAR, l->comm)))
+    st = vg_fail(err, VG_ERR_REMOTE, "MPI cannot prepare signs of life");
+  if (st >= 0) {
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_cond_init(&l->end, NULL);
+    l->is_running = !pthread_create(&l->thread, NULL, live, l);
+    if (!l->is_running) st = vg_fail_memory(err, "a thread");
+    c->life = l;
+  } else if (l) {
+    life_free(l);
+  }
+  return vg_comm_agree(c, st, err);
+}
+
+void vg_comm_watch_end(struct vg_comm *c)
+{
+  struct vg_life *l = c->life;
+
+  if (!l) return;
+  c->life = NULL;
+  pthread_mutex_lock(&l->lock);
+  l->ends = 1;
+  pthread_cond_signal(&l->end);
+  pthread_mutex_unlock(&l->lock);
+  if (l->is_running) pthread_join(l->thread, NULL);
+  pthread_mutex_destroy(&l->lock);
+  pthread_cond_destroy(&l->end);
+  life_free(l);
 }

@@ -21,7 +21,11 @@ export LC_ALL=C COLUMNS=80 ASAN_OPTIONS="${ASAN_OPTIONS:-}"
 vanguard() {
   "$program" "$@" >out 2>err
   status=$?
+  ! grep -qaE "$strange" out err || fail "a number in the answer is wrong"
 }
+# Not a number, or nearly 2^64, unless it is quoted from the input.
+strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^)]"
+strange="$strange|18446744073709"
 
 fail() {
   failures=$((failures + 1))

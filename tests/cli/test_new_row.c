@@ -84,7 +84,7 @@ static void is_an_option(void **state)
   int key = vg_cli_option_key("tip_size"), found = 0;
 
   (void)state;
-  assert_true(vg_cli_options(none, &options) >= 0);
+  assert_true(vg_cli_options(none, &options, NULL) >= 0);
   for (size_t i = 0; i < options.n; i++)
     if (options.option[i].key == key) {
       found++;

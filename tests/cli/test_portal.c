@@ -9,7 +9,9 @@
 #include "cli/http/archive.h"
 #include "cli/http/fields.h"
 #include "cli/serve/form.h"
+#include "cli/http/http.h"
 #include "cli/http/inside.h"
+#include "cli/http/visitors.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/projects.h"
 #include "cli/serve/runs.h"
@@ -557,6 +559,60 @@ static void gate_refuses_unauthorised_requests(void **state)
             "Content-Length: 70000\r\n\r\n");
 }
 
+/* Connections that never complete a request keep nobody out, and end. */
+static void slow_connections_make_room(void **state)
+{
+  enum { N = 70 };
+  int mine[N], n_open = 0;
+  char byte;
+
+  (void)state;
+  need_server();
+  for (int i = 0; i < N; i++) {
+    struct vg_error err = VG_ERROR_INIT;
+    int fd[2];
+
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fd),
+                     0);
+    mine[i] = fd[0];
+    assert_int_equal(send(fd[0], "GET /", 5, MSG_NOSIGNAL), 5);
+    if (vg_portal_connect(scene.p, fd[1], &err)) fail_msg("%s", err.text);
+    vg_portal_step(scene.p, 0, &err);
+  }
+  asks(200, "GET /%s HTTP/1.1\r\n" HOST "\r\n");
+  for (int i = 0; i < N; i++) {
+    n_open += read(mine[i], &byte, 1) < 0;
+    close(mine[i]);
+  }
+  assert_true(n_open <= VG_HTTP_VISITORS);
+}
+
+static void visits_end(void **state)
+{
+  struct vg_visitors all;
+  struct vg_visitor one[3];
+  int fd[3][2];
+  char byte;
+
+  (void)state;
+  vg_visitors_init(&all);
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fd[i]),
+                     0);
+    vg_visitors_add(&all, &one[i], fd[i][1]);
+  }
+  vg_visitors_remove(&all, &one[1]); /* it is trusted */
+  vg_visitors_remove(&all, &one[1]);
+  vg_visitors_expire(&all, one[0].since);
+  assert_int_equal(all.n, 2);
+  vg_visitors_expire(&all, one[2].since + 1);
+  assert_int_equal(all.n, 0);
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(read(fd[i][0], &byte, 1), i == 1 ? -1 : 0);
+    for (int k = 0; k < 2; k++) close(fd[i][k]);
+  }
+}
+
 static void pages_are_safe(void **state)
 {
   (void)state;
@@ -910,6 +966,8 @@ int main(void)
     cmocka_unit_test(damaged_records_are_refused),
     cmocka_unit_test(job_states_follow_squeue),
     cmocka_unit_test(gate_refuses_unauthorised_requests),
+    cmocka_unit_test(slow_connections_make_room),
+    cmocka_unit_test(visits_end),
     cmocka_unit_test(pages_are_safe),
     cmocka_unit_test(a_run_waits_and_is_stopped),
     cmocka_unit_test(a_refused_run_marks_its_field),

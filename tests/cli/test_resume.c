@@ -22,6 +22,7 @@ static const struct {
   const char *table, *rows;
 } keeps[] = {
   { "",
+    " rank_silence "
     " cad_seconds helpers max_cells max_memory write report_html ugrid_tail "
     "solver_parts schedule threads min_full min_any min_height max_first_error "
     "max_top_ratio max_non_orthogonality max_skewness min_face_weight "

@@ -24,6 +24,9 @@ fail() {
   echo "--- err"; head -20 err
 }
 
+# Not a number, or nearly 2^64, unless it is quoted from the file.
+strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^)]"
+strange="$strange|18446744073709"
 unites=1
 "$program" --version --verbose | grep -q "vanguard-wrap not found" && unites=0
 
@@ -42,6 +45,7 @@ while IFS='|' read -r command file verdict phrase; do
     grep -qF -- "${file%.*}" err || fail "stderr does not name the file"
   fi
   ! grep -qE 'Sanitizer|runtime error' out err || fail "a sanitizer reports"
+  ! grep -qE "$strange" out err || fail "a number in the answer is wrong"
 done <CASES
 
 echo "$count hostile files, $failures failures"

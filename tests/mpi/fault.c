@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A rank that fails, for faults.sh: `fault abort` ends the job with status 7,
- * `fault kill` dies at once, `fault leave` closes while messages are under way;
- * the other ranks wait in a collective, or close too. */
+ * `fault kill` dies at once, `fault stop` is silent, `fault leave` closes while
+ * messages are under way; the other ranks wait in a collective, or close too.
+ */
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,8 +36,10 @@ int main(int argc, char **argv)
     return 1;
   }
   if (!strcmp(argv[1], "leave")) return leave(c);
+  if (!strcmp(argv[1], "stop") && vg_comm_watch(c, 3, &err)) return 1;
   if (vg_comm_rank(c) == vg_comm_size(c) - 1) {
-    if (!strcmp(argv[1], "abort")) vg_comm_abort(c, 7);
+    if (!strcmp(argv[1], "stop")) raise(SIGSTOP);
+    if (!strcmp(argv[1], "abort")) vg_comm_abort(c, 7, "out of luck");
     raise(SIGKILL);
   }
   vg_comm_sum(c, 1, &v, &err);

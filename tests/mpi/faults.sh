@@ -16,7 +16,12 @@ check() { # WHAT EXPECTED_STATUS
 mpirun=$1
 flag=${2:--n}
 check abort 7
+timeout 30 "$mpirun" "$flag" 2 "$program" abort 2>&1 |
+  grep -q "rank 1: out of luck" || { echo "abort: no text"; bad=1; }
 check kill 137
+timeout 30 "$mpirun" "$flag" 2 "$program" stop 2>&1 |
+  grep -q "rank 1 on .* has given no sign of life for 3 s" ||
+  { echo "stop: the silent rank is not named"; bad=1; }
 check leave 0
 
 # Processes started by a launcher of another MPI, which are not connected.

@@ -6,7 +6,9 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/comm_parts.h"
 
@@ -263,6 +265,51 @@ static void messages_of_more_than_two_gigabytes(void **state)
   meet();
 }
 
+/* Address space of this process. */
+static uint64_t bytes_in_use(void)
+{
+  unsigned long pages = 0;
+  FILE *from = fopen("/proc/self/statm", "r");
+
+  assert_non_null(from);
+  assert_int_equal(fscanf(from, "%lu", &pages), 1);
+  fclose(from);
+  return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+/* There is memory for the bytes of a message, but not for the requests of its
+ * parts: the failure is reported, and then the message is delivered without
+ * data. Only its announcement is sent. */
+static void without_memory(void **state)
+{
+  const int size = vg_comm_size(job), to = (vg_comm_rank(job) + 1) % size;
+  const uint64_t n = 1 << 28;
+  struct vg_error err = VG_ERROR_INIT;
+  struct rlimit was, less;
+  struct vg_message m;
+  vg_status st;
+
+  (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  skip();
+#endif
+  if (size == 1) skip();
+  meet();
+  job->chunk = 1;
+  MPI_Send(&n, sizeof n, MPI_BYTE, to, 2 * 3 + 1, job->message_comm);
+  job->posted++;
+  getrlimit(RLIMIT_AS, &was);
+  less = was;
+  less.rlim_cur = bytes_in_use() + 2 * n;
+  setrlimit(RLIMIT_AS, &less);
+  while ((st = vg_comm_poll(job, &m, &err)) == VG_BLOCKED) sched_yield();
+  setrlimit(RLIMIT_AS, &was);
+  assert_int_equal(st, VG_ERR_MEMORY);
+  m = wait_message();
+  assert_null(m.bytes.data);
+  meet();
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -273,6 +320,7 @@ int main(void)
     cmocka_unit_test(waiting_ranks_are_woken),
     cmocka_unit_test(from_threads),
     cmocka_unit_test(messages_of_more_than_two_gigabytes),
+    cmocka_unit_test(without_memory), /* long messages are lost afterwards */
   };
 
   return RUN_IN_JOB(tests);

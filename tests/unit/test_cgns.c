@@ -3,6 +3,10 @@
  * invalid ones are refused. */
 #include "mixed_support.h"
 
+#ifdef VG_HAS_HDF5
+#include <hdf5.h>
+#endif
+
 #include "io/cgns/cgns.h"
 #include "io/cgns/cgns_put.h"
 #include "io/cgns/cgns_tree.h"
@@ -695,6 +699,55 @@ static void refuses_blocks(void **state)
   refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
 }
 
+#ifdef VG_HAS_HDF5
+/* Data of four integers in another file: a link, external storage, a virtual
+ * data set. The other file has a harmless name and need not exist. */
+static void put_elsewhere(hid_t node, int how)
+{
+  const hsize_t n = 4;
+  hid_t space = H5Screate_simple(1, &n, NULL);
+  hid_t plist = H5Pcreate(H5P_DATASET_CREATE);
+
+  if (how == 0)
+    assert_true(H5Lcreate_external("elsewhere.h5", "/data", node, " data",
+                                   H5P_DEFAULT, H5P_DEFAULT) >= 0);
+  if (how == 1)
+    assert_true(H5Pset_external(plist, "elsewhere.bin", 0, 16) >= 0);
+  if (how == 2) {
+    hid_t file = H5Iget_file_id(node);
+
+    H5Fset_libver_bounds(file, H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST);
+    H5Fclose(file);
+    assert_true(H5Pset_virtual(plist, space, "elsewhere.h5", "/data", space) >=
+                0);
+  }
+  if (how)
+    H5Dclose(H5Dcreate2(node, " data", H5T_STD_I32LE, space, H5P_DEFAULT, plist,
+                        H5P_DEFAULT));
+  H5Pclose(plist);
+  H5Sclose(space);
+}
+
+static void data_in_other_files_are_refused(void **state)
+{
+  (void)state;
+  for (int how = 0; how < 3; how++) {
+    static const int32_t kind[2] = { 10, 0 };
+    static const int64_t range[2] = { 1, 1 };
+    int64_t id;
+    struct tree t;
+
+    start(&t, 3);
+    zone(&t, "Zone 1", 4, all);
+    id = add(&t, t.zone, "cells", "Elements_t", "I4", 1, 1, 2, kind);
+    add(&t, id, "ElementRange", "IndexRange_t", "I8", 1, 1, 2, range);
+    id = add(&t, id, "ElementConnectivity", "DataArray_t", "I4", 0, 1, 0, NULL);
+    put_elsewhere(id, how);
+    refuse(&t, VG_ERR_UNSUPPORTED, "the data are in another file");
+  }
+}
+#endif
+
 static void refuses_files_that_are_not_cgns(void **state)
 {
   (void)state;
@@ -761,6 +814,9 @@ int main(void)
     cmocka_unit_test(conditions_of_a_block_make_its_boundary),
     cmocka_unit_test(bases_are_joined),
     cmocka_unit_test(refuses_blocks),
+#ifdef VG_HAS_HDF5
+    cmocka_unit_test(data_in_other_files_are_refused),
+#endif
     cmocka_unit_test(refuses_files_that_are_not_cgns),
     cmocka_unit_test(damage_is_always_reported),
   };

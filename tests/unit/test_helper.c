@@ -39,15 +39,17 @@ static void put_file(const char *path, const void *data, size_t size, int mode)
   assert_int_equal(chmod(path, (mode_t)mode), 0);
 }
 
-/* A helper that sends `size` bytes and then runs `then`. */
+/* A helper that counts its starts, sends `size` bytes and runs `then`. */
 static void put_helper(const void *first, size_t size, const char *then)
 {
   char script[4096];
 
   mkdir(FOLDER, 0755);
   put_file(FOLDER "/bytes", first, size, 0644);
-  snprintf(script, sizeof script, "#!/bin/sh\ncat '%s/bytes'\n%s\n", FOLDER,
-           then);
+  snprintf(script, sizeof script,
+           "#!/bin/sh\nprintf x >>'%s/starts'\ncat '%s/bytes'\n%s\n", FOLDER,
+           FOLDER, then);
+  unlink(FOLDER "/starts");
   put_file(PROGRAM, script, strlen(script), 0755);
   vg_helper_set_folder("");
   vg_helper_set_folder(FOLDER);
@@ -72,6 +74,7 @@ static void refused(const char *reason)
   vg_helper_find(VG_HELPER_TETGEN, &h);
   assert_false(h.is_found);
   assert_string_equal(h.identity, "none");
+  assert_true(h.is_unusable == !strstr(reason, "is not in the folder"));
   if (!strstr(h.why, reason)) fail_msg("'%s' lacks '%s'", h.why, reason);
 }
 
@@ -129,12 +132,17 @@ static void foreign(void **state)
 static void not_executable(void **state)
 {
   struct vg_helper_hello h = hello();
+  struct vg_helper found;
 
   (void)state;
   put_helper(&h, sizeof h, "");
   chmod(PROGRAM, 0644);
   if (!access(PROGRAM, X_OK)) return; /* some systems allow it to root */
-  refused("is not in the folder");
+  refused("must not execute");
+  assert_int_equal(job_status(VG_ERR_IO), VG_ERR_GEOMETRY);
+  chmod(PROGRAM, 0755); /* the failure is not remembered */
+  vg_helper_find(VG_HELPER_TETGEN, &found);
+  assert_true(found.is_found);
 }
 
 static void identified(void **state)
@@ -148,42 +156,94 @@ static void identified(void **state)
   assert_true(h.is_found);
   assert_string_equal(h.path, PROGRAM);
   assert_string_equal(h.identity, "Script 1, vanguard-tetgen 0123456789abcdef, "
-                                  "format 1");
+                                  "format 2");
 }
 
-/* A job fails, and the caller goes on. */
-static void crashes(void **state)
+/* A helper that is killed says nothing about the triangles. It starts for its
+ * test, for the job and for the repetition of the job. */
+static void killed(void **state)
 {
+  static const char *const end[] = { "kill -KILL $$", "kill -SEGV $$",
+                                     "exit 1" };
   struct vg_helper_hello h = hello();
 
   (void)state;
-  put_helper(&h, sizeof h, "kill -SEGV $$");
+  for (size_t i = 0; i < sizeof end / sizeof *end; i++) {
+    struct stat s;
+
+    put_helper(&h, sizeof h, end[i]);
+    assert_int_equal(job_status(VG_ERR_IO), VG_ERR_GEOMETRY);
+    assert_int_equal(stat(FOLDER "/starts", &s), 0);
+    assert_int_equal(s.st_size, 3);
+  }
+}
+
+struct reply {
+  struct vg_helper_hello h;
+  struct vg_helper_message m;
+  uint32_t tet[4];
+};
+
+/* Only the library's failure on the triangles lets the caller go on; a crash
+ * must happen twice. */
+static void failures(void **state)
+{
+  static const struct {
+    uint32_t cause;
+    vg_status expected;
+  } row[] = {
+    { VG_HELPER_CRASHED, VG_OK },
+    { VG_HELPER_NO_MEMORY, VG_ERR_MEMORY },
+    { VG_HELPER_TIME, VG_ERR_IO },
+  };
+  struct reply all = { .h = hello(), .m = { .what = VG_HELPER_NONE } };
+
+  (void)state;
+  put_helper(&all, sizeof all.h + sizeof all.m, "");
   assert_int_equal(job_status(VG_OK), VG_ERR_GEOMETRY);
-  put_helper(&h, sizeof h, "exit 1");
-  assert_int_equal(job_status(VG_OK), VG_ERR_GEOMETRY);
+  all.m.what = VG_HELPER_FAILED;
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    all.m.option = row[i].cause;
+    put_helper(&all, sizeof all.h + sizeof all.m, "cat >/dev/null");
+    assert_int_equal(job_status(row[i].expected), VG_ERR_GEOMETRY);
+  }
+}
+
+/* The repetition of a job that got no answer has the same result. */
+static void repeated(void **state)
+{
+  struct reply all = { .h = hello(),
+                       .m = { .what = VG_HELPER_CELLS, .n = { 0, 1 } },
+                       .tet = { 0, 1, 2, 3 } };
+  char script[512];
+
+  (void)state;
+  snprintf(script, sizeof script,
+           "[ $(wc -c <'%s/starts') = 2 ] && exit 1\n"
+           "cat '%s/rest'; cat >/dev/null",
+           FOLDER, FOLDER);
+  put_helper(&all.h, sizeof all.h, script);
+  put_file(FOLDER "/rest", &all.m, sizeof all - sizeof all.h, 0644);
+  assert_int_equal(job_status(VG_OK), VG_OK);
 }
 
 static void wrong_answers(void **state)
 {
   static const struct vg_helper_message wrong[] = {
-    { .what = VG_HELPER_NONE },
     { .what = 99 },
     { .what = VG_HELPER_CELLS, .n = { UINT64_MAX, 1 } },
     { .what = VG_HELPER_CELLS, .n = { 1, 1u << 31 } }, /* and nothing more */
     { .what = VG_HELPER_CELLS, .n = { 0, 1 } },
   };
-  struct {
-    struct vg_helper_hello h;
-    struct vg_helper_message m;
-    uint32_t tet[4];
-  } all = { .h = hello(), .tet = { 0, 1, 2, 4 } }; /* there is no point 4 */
+  struct reply all = { .h = hello(),
+                       .tet = { 0, 1, 2, 4 } }; /* there is no point 4 */
 
   (void)state;
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     all.m = wrong[i];
     put_helper(&all, sizeof all, "cat >/dev/null");
-    if (i == 3) put_helper(&all, sizeof all.h + sizeof all.m, "");
-    assert_int_equal(job_status(VG_OK), VG_ERR_GEOMETRY);
+    if (i == 2) put_helper(&all, sizeof all.h + sizeof all.m, "");
+    assert_int_equal(job_status(i < 3 ? VG_ERR_IO : VG_OK), VG_ERR_GEOMETRY);
   }
   all.tet[3] = 3;
   put_helper(&all, sizeof all, "cat >/dev/null");
@@ -287,7 +347,9 @@ int main(void)
     cmocka_unit_test(foreign),
     cmocka_unit_test(not_executable),
     cmocka_unit_test(identified),
-    cmocka_unit_test(crashes),
+    cmocka_unit_test(killed),
+    cmocka_unit_test(failures),
+    cmocka_unit_test(repeated),
     cmocka_unit_test(wrong_answers),
     cmocka_unit_test(hangs),
     cmocka_unit_test(replaced),

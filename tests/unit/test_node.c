@@ -403,6 +403,23 @@ static void changes_are_applied(void **state)
   scene_end(&s);
 }
 
+/* Two cells on one face. */
+static void faces_are_consumed_once(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m;
+  struct scene s;
+
+  (void)state;
+  four_boxes(&m, 4);
+  scene_of(&s, &m);
+  works_of(s.n, 2);
+  for (uint32_t i = 0; i < 2; i++) cell_on(s.n, i, 7, 5 + i);
+  assert_int_equal(vg_node_put(&s.p, s.n, NULL, &err), VG_ERR_UNSUPPORTED);
+  assert_non_null(strstr(err.text, "1 faces of the front were consumed twice"));
+  scene_end(&s);
+}
+
 /* --- changes that intersect the front ------------------------------------ */
 
 /* A box with edges of 1 at x = -6, and a fine one at the origin, 1 away from
@@ -594,6 +611,7 @@ int main(void)
     cmocka_unit_test(places_are_found),
     cmocka_unit_test(patches_stay_open_near_many_cells),
     cmocka_unit_test(changes_are_applied),
+    cmocka_unit_test(faces_are_consumed_once),
     cmocka_unit_test(intersecting_changes_are_dropped),
     cmocka_unit_test(cells_containing_a_body_are_dropped),
     cmocka_unit_test(dropped_cells_are_forgotten),

@@ -369,6 +369,33 @@ static void suggestions_work(void **state)
   }
 }
 
+/* Up to three far points are found at any distance, but not four, which may be
+ * a farfield: then the limit on points ends the search. */
+static void far_points_are_named(void **state)
+{
+  (void)state;
+  for (double far = 40; far < 1e9; far *= 1000)
+    for (size_t n = 0; n <= 4; n++) {
+      struct vg_mesh m = VG_MESH_INIT;
+      enum vg_wrap_reason reason;
+      uint32_t point = 0;
+      size_t tri = 0;
+      double size;
+
+      add_brick(&m, 0, 12);
+      m.n_tri--; /* a hole */
+      for (size_t p = 0; p < n; p++) m.point[p][p % 3] += far * (1 + (double)p);
+      assert_int_equal(vg_wrap_far_point(&m, &point, &tri), n && n < 4);
+      if (n && n < 4) {
+        assert_true(point < n);
+        assert_true(m.tri[tri][0] == point || m.tri[tri][1] == point ||
+                    m.tri[tri][2] == point);
+      }
+      if (n == 4) vg_wrap_suggest(&m, NULL, &size, &reason, NULL);
+      vg_mesh_release(&m);
+    }
+}
+
 /* Points at an offset from a sharp edge of zero thickness would fold if all of
  * them moved onto it; they are merged there. */
 static void sharp_edges_are_restored(void **state)
@@ -740,6 +767,7 @@ int main(void)
     cmocka_unit_test(bodies_that_leave_the_tunnel_are_refused),
     cmocka_unit_test(progress_has_a_share),
     cmocka_unit_test(suggestions_work),
+    cmocka_unit_test(far_points_are_named),
     cmocka_unit_test(walls_do_not_vanish),
     cmocka_unit_test(any_input_is_refused_or_valid),
     cmocka_unit_test(a_real_pipe_is_not_a_hollow_shell),

@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/parallel.h"
@@ -19,6 +21,7 @@
   60 /* limit for the first message, on slow file systems                      \
       */
 #define VARIABLE "VANGUARD_HELPERS"
+#define PAUSE_SECONDS 1 /* before a repetition */
 
 static const struct {
   const char *name, *holds, *package, *option;
@@ -98,14 +101,15 @@ const char *vg_helper_hello_wrong(const struct vg_helper_hello *h,
 
 /* Start a program and read its first message. Returns NULL, or what is wrong.
  * The child is closed on failure. */
-static const char *start(const char *path, const char *name,
-                         const struct vg_stop *stop, struct vg_child *c,
-                         struct vg_link *l, struct vg_helper_hello *hello)
+static const char *start_once(const char *path, const char *name,
+                              const struct vg_stop *stop, struct vg_child *c,
+                              struct vg_link *l, struct vg_helper_hello *hello)
 {
   struct program p = { "" };
   const char *wrong;
 
   snprintf(p.path, sizeof p.path, "%s", path);
+  *l = (struct vg_link){ .state = VG_LINK_NO_MEMORY };
   if (vg_child_open(become, c) < 0) return "the system refuses another process";
   *l = (struct vg_link){ .fd = c->fd, .silence = START_SECONDS, .stop = stop };
   if (vg_link_put(l, &p, sizeof p) && vg_link_get(l, hello, sizeof *hello))
@@ -115,6 +119,18 @@ static const char *start(const char *path, const char *name,
   else wrong = "it ended when it was started; run it to see the reason";
   if (wrong) vg_helper_close(c);
   return wrong;
+}
+
+static const char *start(const char *path, const char *name,
+                         const struct vg_stop *stop, struct vg_child *c,
+                         struct vg_link *l, struct vg_helper_hello *hello)
+{
+  const struct timespec pause = { PAUSE_SECONDS, 0 };
+  const char *wrong = start_once(path, name, stop, c, l, hello);
+
+  if (!wrong || l->state == VG_LINK_OPEN || vg_stops(stop)) return wrong;
+  nanosleep(&pause, NULL);
+  return start_once(path, name, stop, c, l, hello);
 }
 
 static void identify(const struct vg_helper_hello *hello, struct vg_helper *h)
@@ -142,12 +158,16 @@ static int own_folder(char *out, size_t size)
   return slash != NULL;
 }
 
+/* A link that leads nowhere counts as a file. */
 static int try_folder(const char *in, const char *below, struct vg_helper *h)
 {
+  struct stat s;
   int n = snprintf(h->path, sizeof h->path, "%s%s%s/%s", in, *below ? "/" : "",
                    below, h->name);
 
-  if (n > 0 && (size_t)n < sizeof h->path && !access(h->path, X_OK)) return 1;
+  if (n > 0 && (size_t)n < sizeof h->path &&
+      (!lstat(h->path, &s) || (errno != ENOENT && errno != ENOTDIR)))
+    return 1;
   *h->path = 0;
   return 0;
 }
@@ -196,11 +216,13 @@ static void search(const char *folder, enum vg_helper_kind kind,
   if (!find_file(folder, h, helper_names[kind].package,
                  helper_names[kind].option))
     return;
-  wrong = start(h->path, h->name, NULL, &c, &l, &hello);
+  wrong = access(h->path, X_OK) ? "this user must not execute it"
+                                : start(h->path, h->name, NULL, &c, &l, &hello);
   if (wrong) {
+    h->is_unusable = 1;
     snprintf(h->why, sizeof h->why,
-             "%s, the helper program with %s, cannot be "
-             "used: %.600s: %s",
+             "%s, the helper program with %s, is installed but cannot be used: "
+             "%.600s: %s. Repair it, or remove it to run without it",
              h->name, h->holds, h->path, wrong);
     *h->path = 0;
     return;
@@ -229,6 +251,12 @@ void vg_helper_set_folder(const char *to)
   vg_thread_data_set(p);
 }
 
+const char *vg_helper_name(enum vg_helper_kind kind)
+{
+  assert(kind < VG_HELPER_N);
+  return helper_names[kind].name;
+}
+
 void vg_helper_find(enum vg_helper_kind kind, struct vg_helper *out)
 {
   struct place *p = here();
@@ -236,7 +264,7 @@ void vg_helper_find(enum vg_helper_kind kind, struct vg_helper *out)
   assert(kind < VG_HELPER_N && out);
   pthread_mutex_lock(&lock);
   if (!p->is_known[kind]) search(p->folder, kind, &p->found[kind]);
-  p->is_known[kind] = 1;
+  p->is_known[kind] = !p->found[kind].is_unusable;
   *out = p->found[kind];
   pthread_mutex_unlock(&lock);
 }
@@ -253,11 +281,10 @@ vg_status vg_helper_open(enum vg_helper_kind kind, const struct vg_stop *stop,
 
   assert(child && link && silence > 0);
   vg_helper_find(kind, &h);
-  if (!h.is_found) return vg_fail(err, VG_ERR_UNSUPPORTED, "%s", h.why);
-  for (int attempt = 0; attempt < 2; attempt++) { /* if the server just died */
-    wrong = start(h.path, h.name, stop, child, link, &hello);
-    if (!wrong || link->state != VG_LINK_ENDED) break;
-  }
+  if (!h.is_found)
+    return vg_fail(err, h.is_unusable ? VG_ERR_IO : VG_ERR_UNSUPPORTED, "%s",
+                   h.why);
+  wrong = start(h.path, h.name, stop, child, link, &hello);
   if (wrong && vg_stops(stop)) return vg_stopped(stop, err);
   if (wrong)
     return vg_fail(err, VG_ERR_IO, "%s no longer starts: %s", h.path, wrong);
@@ -271,6 +298,56 @@ vg_status vg_helper_open(enum vg_helper_kind kind, const struct vg_stop *stop,
   }
   link->silence = silence;
   return VG_OK;
+}
+
+vg_status vg_helper_lost(const struct vg_link *l, uint32_t cause,
+                         const char *who, struct vg_error *err)
+{
+  static const char *const less =
+    "use fewer ranks or threads per node, or smaller subdomains (leaf_cells)";
+
+  assert(l && who);
+  if (l->state == VG_LINK_STOPPED) return vg_stopped(l->stop, err);
+  if (l->state == VG_LINK_NO_MEMORY)
+    return vg_fail_memory(err, "the answer of a helper program");
+  if (l->state == VG_LINK_SILENT)
+    return vg_fail(err, VG_ERR_IO,
+                   "%s sent nothing for %g seconds and was ended", who,
+                   l->silence);
+  if (l->state == VG_LINK_ENDED)
+    return vg_fail(err, VG_ERR_IO,
+                   "%s ended without an answer. If it was killed for "
+                   "lack of memory (see dmesg), %s",
+                   who, less);
+  if (cause == VG_HELPER_NO_MEMORY)
+    return vg_fail(err, VG_ERR_MEMORY, "%s was refused memory; %s", who, less);
+  if (cause == VG_HELPER_TIME)
+    return vg_fail(err, VG_ERR_IO,
+                   "%s reached its limit of processor time; select "
+                   "another mesher",
+                   who);
+  return vg_fail(err, VG_ERR_IO,
+                 "%s sent an answer that this program does not know", who);
+}
+
+static int is_of_machine(vg_status st)
+{
+  return st == VG_ERR_IO || st == VG_ERR_MEMORY;
+}
+
+vg_status vg_helper_repeat(vg_helper_attempt *attempt, void *user,
+                           const struct vg_stop *stop, struct vg_error *err)
+{
+  static pthread_mutex_t alone = PTHREAD_MUTEX_INITIALIZER;
+  const struct timespec pause = { PAUSE_SECONDS, 0 };
+  vg_status st = attempt(user, err);
+
+  if (!is_of_machine(st) || vg_stops(stop)) return st;
+  pthread_mutex_lock(&alone);
+  nanosleep(&pause, NULL);
+  st = attempt(user, err);
+  pthread_mutex_unlock(&alone);
+  return st;
 }
 
 /* A helper ends when its socket is closed. A process of our own is killed,

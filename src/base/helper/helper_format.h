@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /** Version of the format. Helpers with another version are refused. */
-#define VG_HELPER_FORMAT 1
+#define VG_HELPER_FORMAT 2
 
 #define VG_HELPER_MAGIC "VGHELPER"
 #define VG_HELPER_ORDER 0x01020304u
@@ -59,7 +59,8 @@ enum {
   /* Replies. */
   VG_HELPER_CELLS = 20,    /* n[0] added points, n[1] tetrahedra */
   VG_HELPER_SIZES = 21,    /* requests target edge lengths at n[0] points */
-  VG_HELPER_NONE = 22,     /* the void could not be filled */
+  VG_HELPER_NONE = 22,     /* the void could not be filled, or its triangles
+                              could not be recovered */
   VG_HELPER_SURFACE = 23,  /* n[0] points, n[1] triangles */
   VG_HELPER_FEET = 24,     /* n[0] nearest points, and their n[0] triangles
                               (uint32_t) */
@@ -74,7 +75,9 @@ enum {
   VG_HELPER_NO_MEMORY = 1,
   VG_HELPER_TOO_MANY = 2,   /* more points than allowed */
   VG_HELPER_DEGENERATE = 3, /* all triangles are degenerate */
-  VG_HELPER_ERROR = 4       /* the library reported an error */
+  VG_HELPER_ERROR = 4,      /* the library reported an error */
+  VG_HELPER_CRASHED = 5,    /* the library crashed */
+  VG_HELPER_TIME = 6        /* limit of processor time */
 };
 
 #endif

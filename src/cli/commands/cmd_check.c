@@ -303,10 +303,7 @@ int vg_cmd_check(int argc, char **argv)
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
-  if (vg_cli_options(own, &options) < 0) {
-    vg_fail_memory(&err, "the options");
-    return vg_cli_fail(&err);
-  }
+  if (vg_cli_options(own, &options, &err) < 0) return vg_cli_fail(&err);
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
   st = check(&a, &err);

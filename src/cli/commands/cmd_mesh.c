@@ -553,6 +553,7 @@ static const struct argp_option own[] = {
 int vg_cmd_mesh(int argc, char **argv)
 {
   struct vg_cli_options options;
+  struct vg_error err = VG_ERROR_INIT;
   struct argp argp = {
     .parser = option,
     .args_doc = "-p PROJECT",
@@ -581,7 +582,7 @@ int vg_cmd_mesh(int argc, char **argv)
                          .run = { .change = VG_AGREE_NOTHING } };
   int status;
 
-  if (vg_cli_options(own, &options) < 0) return VG_EXIT_FAILED;
+  if (vg_cli_options(own, &options, &err) < 0) return vg_cli_fail(&err);
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
   status = run(&a);

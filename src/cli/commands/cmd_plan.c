@@ -236,10 +236,7 @@ int vg_cmd_plan(int argc, char **argv)
   if (vg_range_parse("--ranks", "1:512:x2", 1, 512, &o.ranks, &err) < 0 ||
       vg_range_parse("--threads", "1", 1, 1, &o.threads, &err) < 0)
     return vg_cli_fail(&err);
-  if (vg_cli_options(own, &options) < 0) {
-    vg_fail_memory(&err, "the options");
-    return vg_cli_fail(&err);
-  }
+  if (vg_cli_options(own, &options, &err) < 0) return vg_cli_fail(&err);
   /* --threads is a list in this command, so the setting is hidden. */
   for (size_t i = 0; i < options.n; i++)
     if (options.option[i].key == vg_cli_option_key("threads"))

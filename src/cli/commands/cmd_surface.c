@@ -319,10 +319,7 @@ int vg_cmd_surface(int argc, char **argv)
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
-  if (vg_cli_options(own, &options) < 0) {
-    vg_fail_memory(&err, "the options");
-    return vg_cli_fail(&err);
-  }
+  if (vg_cli_options(own, &options, &err) < 0) return vg_cli_fail(&err);
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
   vg_display_init(&show, a.one.quiet);

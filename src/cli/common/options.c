@@ -346,7 +346,7 @@ static void add_title(struct vg_cli_options *o, const char *title, int group)
 }
 
 vg_status vg_cli_options(const struct argp_option *own,
-                         struct vg_cli_options *out)
+                         struct vg_cli_options *out, struct vg_error *err)
 {
   size_t n = 0, n_own = 0, room;
   const struct vg_param *p;
@@ -362,7 +362,7 @@ vg_status vg_cli_options(const struct argp_option *own,
   out->text = vg_calloc(2 * room, sizeof *out->text);
   if (!out->option || !out->text) {
     vg_cli_options_free(out);
-    return VG_ERR_MEMORY;
+    return vg_fail_memory(err, "the options");
   }
   memcpy(out->option, own, n_own * sizeof *own);
   out->n = n_own;
@@ -380,7 +380,7 @@ vg_status vg_cli_options(const struct argp_option *own,
                       VG_GROUP_TOPIC + (int)vg_param_topic(p, in_farfield));
   if (!bad) return VG_OK;
   vg_cli_options_free(out);
-  return VG_ERR_MEMORY;
+  return vg_fail_memory(err, "the options");
 }
 
 void vg_cli_options_free(struct vg_cli_options *o)

@@ -40,7 +40,7 @@ struct vg_cli_options {
 
 /** @param own  the options of the subcommand, terminated by a zero entry */
 vg_status vg_cli_options(const struct argp_option *own,
-                         struct vg_cli_options *out);
+                         struct vg_cli_options *out, struct vg_error *err);
 void vg_cli_options_free(struct vg_cli_options *o);
 
 /** Key of the option of the setting `name`, for a short option with the same

@@ -12,18 +12,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "cli/http/visitors.h"
 
 /* The library is loaded only when a portal is opened: it depends on GnuTLS,
  * which would slow down every start of the program. */
 #define FUNCTIONS(f)                                                           \
   f(MHD_start_daemon) f(MHD_stop_daemon) f(MHD_add_connection) f(MHD_run_wait) \
     f(MHD_lookup_connection_value) f(MHD_get_connection_values)                \
-      f(MHD_create_post_processor) f(MHD_post_process)                         \
-        f(MHD_destroy_post_processor) f(MHD_create_response_from_buffer)       \
-          f(MHD_create_response_from_fd64) f(MHD_add_response_header)          \
-            f(MHD_create_response_from_callback) f(MHD_queue_response)         \
-              f(MHD_destroy_response)
+      f(MHD_get_connection_info) f(MHD_create_post_processor)                  \
+        f(MHD_post_process) f(MHD_destroy_post_processor)                      \
+          f(MHD_create_response_from_buffer) f(MHD_create_response_from_fd64)  \
+            f(MHD_add_response_header) f(MHD_create_response_from_callback)    \
+              f(MHD_queue_response) f(MHD_destroy_response)
 
 struct library {
   void *handle;
@@ -35,6 +37,7 @@ struct vg_http {
   struct library lib;
   struct MHD_Daemon *daemon;
   const struct vg_http_handler *h;
+  struct vg_visitors visitors;
 };
 
 /* A request in progress. */
@@ -161,6 +164,35 @@ static void completed(void *user, struct MHD_Connection *connection,
   *state = NULL;
 }
 
+/* --- connections --------------------------------------------------------- */
+
+static void connected(void *user, struct MHD_Connection *connection,
+                      void **state, enum MHD_ConnectionNotificationCode what)
+{
+  struct vg_http *http = user;
+  const union MHD_ConnectionInfo *info;
+
+  if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+    info = http->lib.MHD_get_connection_info(connection,
+                                             MHD_CONNECTION_INFO_CONNECTION_FD);
+    *state = info ? vg_calloc(1, sizeof(struct vg_visitor)) : NULL;
+    if (*state) vg_visitors_add(&http->visitors, *state, info->connect_fd);
+  } else if (*state) {
+    vg_visitors_remove(&http->visitors, *state);
+    free(*state);
+    *state = NULL;
+  }
+}
+
+static void trust(struct vg_http *http, struct MHD_Connection *connection)
+{
+  const union MHD_ConnectionInfo *info = http->lib.MHD_get_connection_info(
+    connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+
+  if (info && info->socket_context)
+    vg_visitors_remove(&http->visitors, info->socket_context);
+}
+
 /* --- replies ------------------------------------------------------------- */
 
 static ssize_t read_archive(void *user, uint64_t at, char *to, size_t most)
@@ -277,6 +309,7 @@ static enum MHD_Result head(struct vg_http *http,
 {
   struct vg_reply a = VG_REPLY_INIT;
   struct call *c;
+  int is_answered;
   int n = http->lib.MHD_get_connection_values(connection, MHD_HEADER_KIND, NULL,
                                               NULL);
 
@@ -284,8 +317,9 @@ static enum MHD_Result head(struct vg_http *http,
   c = begin_call(http, connection, path, method);
   if (!c) return MHD_NO;
   *state = c;
-  if (http->h->begin(http->h->user, &c->r, &a))
-    return answer(http, connection, &a);
+  is_answered = http->h->begin(http->h->user, &c->r, &a);
+  if (c->r.is_trusted) trust(http, connection);
+  if (is_answered) return answer(http, connection, &a);
   if (!strcmp(method, "POST")) /* NULL if the body is not a form, or absent */
     c->post = http->lib.MHD_create_post_processor(connection, 65536, take_field,
                                                   c);
@@ -340,6 +374,7 @@ vg_status vg_http_open(int fd, const struct vg_http_handler *h,
 
   if (!http) return vg_fail_memory(err, "the server");
   http->h = h;
+  vg_visitors_init(&http->visitors);
   st = load(&http->lib, err);
   if (st < 0 && fd >= 0) close(fd);
   if (st < 0) goto done;
@@ -347,10 +382,10 @@ vg_status vg_http_open(int fd, const struct vg_http_handler *h,
   http->daemon = http->lib.MHD_start_daemon(
     flags, 0, NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, say_nothing,
     NULL, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
-    MHD_OPTION_CONNECTION_LIMIT, (unsigned)VG_HTTP_CONNECTIONS,
-    MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)VG_HTTP_SILENCE_S,
-    MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)VG_HTTP_HEAD_BYTES,
-    MHD_OPTION_STRICT_FOR_CLIENT, 1,
+    MHD_OPTION_NOTIFY_CONNECTION, connected, http, MHD_OPTION_CONNECTION_LIMIT,
+    (unsigned)VG_HTTP_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
+    (unsigned)VG_HTTP_SILENCE_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+    (size_t)VG_HTTP_HEAD_BYTES, MHD_OPTION_STRICT_FOR_CLIENT, 1,
     fd < 0 ? MHD_OPTION_END : MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_END);
   if (!http->daemon) {
     st = vg_fail(err, VG_ERR_IO, "the web server cannot be started");
@@ -384,6 +419,7 @@ vg_status vg_http_connect(struct vg_http *http, int fd, struct vg_error *err)
 vg_status vg_http_step(struct vg_http *http, int milliseconds,
                        struct vg_error *err)
 {
+  vg_visitors_expire(&http->visitors, vg_clock() - VG_HTTP_VISIT_S);
   if (http->lib.MHD_run_wait(http->daemon, milliseconds) == MHD_YES)
     return VG_OK;
   return vg_fail(err, VG_ERR_IO, "the web server has failed");

@@ -12,10 +12,13 @@
 #include "cli/http/fields.h"
 #include "cli/http/upload.h"
 
-/* Limits for clients: connections, seconds without data, bytes of request line
+/* Limits for clients: connections, those of them that the handler does not
+ * trust, and seconds until it must; seconds without data, bytes of request line
  * and headers, number of headers. */
 enum {
   VG_HTTP_CONNECTIONS = 64,
+  VG_HTTP_VISITORS = 16,
+  VG_HTTP_VISIT_S = 10,
   VG_HTTP_SILENCE_S = 30,
   VG_HTTP_HEAD_BYTES = 32768,
   VG_HTTP_HEADERS = 64
@@ -25,6 +28,7 @@ struct vg_request {
   const char *method, *path; /* path: decoded, without the query */
   const char *host, *origin; /* headers; "" if absent */
   int64_t length;            /* announced length of the body; -1: unknown */
+  int is_trusted;            /* set by `begin`: its connection may stay */
   struct vg_fields query, form;
   struct vg_upload upload;
   vg_status body; /* < 0: the body was rejected, see error */

@@ -26,7 +26,8 @@ static int begin(void *user, struct vg_request *r, struct vg_reply *a)
 {
   const char *rest;
 
-  return !vg_gate(user, r, &rest, a);
+  r->is_trusted = vg_gate(user, r, &rest, a);
+  return !r->is_trusted;
 }
 
 static vg_status file(void *user, struct vg_request *r, const char *name,

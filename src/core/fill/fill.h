@@ -66,8 +66,7 @@ struct vg_fill_report {
   size_t n_other,
     n_other_cell;        /* voids filled by another mesher, and their cells */
   size_t n_other_failed; /* voids that another mesher failed to fill */
-  size_t n_other_ended;  /* voids in which its process crashed or ran out of
-                            time */
+  size_t n_other_ended;  /* voids in which it crashed */
   size_t n_other_wrong;  /* voids for which its result was wrong */
   double time_other;     /* seconds in another mesher */
   double time_boundary, time_place, time_insert, time_optimise, time_total;

@@ -77,12 +77,12 @@ static const struct vg_mesher *load(const char *name, char *why, size_t size)
 
 /* --- a void --------------------------------------------------------------- */
 
-/* A limit of processor time ends meshers that do not terminate. */
+/* A limit of processor time, after which vg_child_answer_crashes ends meshers
+ * that do not terminate. */
 static void set_end(double seconds)
 {
   struct itimerval t = { { 0, 0 }, { (time_t)seconds + 1, 0 } };
 
-  signal(SIGPROF, SIG_DFL);
   setitimer(ITIMER_PROF, &t, NULL);
 }
 
@@ -116,11 +116,16 @@ static int put_cells(int fd, const struct vg_mesher_cells *c)
 __attribute__((noreturn)) static void fill(int fd, const struct vg_mesher *m,
                                            const struct vg_helper_message *job)
 {
+  static const struct vg_helper_message crash = { .what = VG_HELPER_FAILED,
+                                                  .option = VG_HELPER_CRASHED };
+  static const struct vg_helper_message time = { .what = VG_HELPER_FAILED,
+                                                 .option = VG_HELPER_TIME };
   static const struct vg_helper_message none = { .what = VG_HELPER_NONE };
   struct vg_mesher_cells cells = { 0, 0, NULL, NULL };
   struct vg_mesher_sizes sizes = { vg_child_sizes_at, NULL };
   struct vg_mesher_front front;
 
+  vg_child_answer_crashes(fd, &crash, &time, sizeof crash);
   set_end(job->value[0]);
   if (!get_front(fd, job, &front)) _exit(1);
   sizes.user = vg_child_sizes_new(fd, fd, &front);

@@ -70,6 +70,9 @@ static vg_status borrow(struct vg_mesher_pool *p, struct vg_child *c,
   if (is_idle) *c = p->idle[--p->n];
   pthread_mutex_unlock(&p->lock);
   if (!is_idle) st = start(p, c, err);
+  if (st == VG_ERR_UNSUPPORTED) /* it was supported when it was opened */
+    st = vg_fail(err, VG_ERR_IO, "mesher %.200s no longer starts",
+                 p->spec.name);
   l->fd = c->fd;
   return st;
 }
@@ -151,10 +154,13 @@ void vg_mesher_set_time_limit(struct vg_mesher_pool *p, double seconds,
 
 /* --- a void --------------------------------------------------------------- */
 
-enum outcome { FILLED, STOPPED, TOO_MANY, FAILED, ENDED };
+enum outcome { FILLED, TOO_MANY, FAILED, CRASHED, WRONG };
 
 struct filling {
+  struct vg_mesher_pool *pool;
   struct vg_link *link;
+  enum outcome outcome;
+  int n_crash;
   size_t n_hole;
   double (*hole)[3]; /* [n_hole] a point in each hollow of the front */
   const struct vg_front *front;
@@ -224,15 +230,26 @@ static int answer_sizes(struct filling *f, uint64_t n)
          vg_link_put(f->link, h, n * sizeof *h);
 }
 
-static enum outcome take_cells(struct filling *f,
-                               const struct vg_helper_message *w)
+static void release_cells(struct filling *f)
+{
+  free(f->x);
+  free(f->cell);
+  f->x = NULL;
+  f->cell = NULL;
+}
+
+static vg_status take_cells(struct filling *f,
+                            const struct vg_helper_message *w,
+                            struct vg_error *err)
 {
   size_t n_front = f->front->n_point;
   double(*added)[3];
 
-  if (f->options->point_limit && w->n[0] > f->options->point_limit)
-    return TOO_MANY;
-  if (w->n[1] > n_max || w->n[0] > n_max) return ENDED;
+  f->outcome = f->options->point_limit && w->n[0] > f->options->point_limit
+               ? TOO_MANY
+             : w->n[1] > n_max || w->n[0] > n_max ? WRONG
+                                                  : FILLED;
+  if (f->outcome != FILLED) return VG_OK;
   added = vg_link_get_array(f->link, w->n[0], sizeof *added);
   f->n = n_front + w->n[0];
   f->n_cell = w->n[1];
@@ -243,20 +260,49 @@ static enum outcome take_cells(struct filling *f,
     f->cell = vg_link_get_array(f->link, w->n[1], sizeof *f->cell);
   }
   free(added);
-  return f->cell ? FILLED : ENDED;
+  if (f->cell) return VG_OK;
+  return f->link->state == VG_LINK_OPEN
+         ? vg_fail_memory(err, "the cells of a void")
+         : vg_helper_lost(f->link, 0, f->pool->spec.name, err);
 }
 
-static enum outcome run_job(struct filling *f)
+static vg_status run_job(struct filling *f, struct vg_error *err)
 {
-  struct vg_helper_message w;
+  struct vg_helper_message w = { .what = 0 };
+  int is_open = put_job(f);
 
-  if (!put_job(f)) return ENDED;
-  for (;;) {
-    if (!vg_link_get(f->link, &w, sizeof w)) return ENDED;
-    if (w.what == VG_HELPER_CELLS) return take_cells(f, &w);
-    if (w.what == VG_HELPER_NONE) return FAILED;
-    if (w.what != VG_HELPER_SIZES || !answer_sizes(f, w.n[0])) return ENDED;
-  }
+  while (is_open && vg_link_get(f->link, &w, sizeof w) &&
+         w.what == VG_HELPER_SIZES)
+    is_open = answer_sizes(f, w.n[0]);
+  if (f->link->state == VG_LINK_OPEN && w.what == VG_HELPER_CELLS)
+    return take_cells(f, &w, err);
+  f->outcome = w.what == VG_HELPER_NONE ? FAILED : CRASHED;
+  if (f->outcome == FAILED) return VG_OK;
+  if (w.what != VG_HELPER_FAILED) w.option = 0;
+  if (w.option == VG_HELPER_CRASHED)
+    return f->n_crash++ ? VG_OK : VG_BLOCKED; /* it must happen twice */
+  return vg_helper_lost(f->link, w.option, f->pool->spec.name, err);
+}
+
+/* Fill the void in a process. */
+static vg_status attempt(void *user, struct vg_error *err)
+{
+  struct filling *f = user;
+  struct vg_mesher_pool *p = f->pool;
+  struct vg_link l = { .stop = &f->options->stop,
+                       .silence = silence * f->seconds };
+  struct vg_child c;
+  vg_status st;
+
+  release_cells(f);
+  f->link = &l;
+  if ((st = borrow(p, &c, &l, err)) < 0) return st;
+  st = run_job(f, err);
+  if (p->is_helper) vg_helper_close(&c);
+  else if (st == VG_OK && (f->outcome == FILLED || f->outcome == FAILED))
+    give_back(p, &c);
+  else vg_child_close(&c);
+  return st;
 }
 
 /* Store the checked cells, without the points of the front. */
@@ -301,43 +347,36 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
                          struct vg_filled *out, struct vg_fill_report *report,
                          struct vg_error *err)
 {
-  struct filling f = { .front = front,
+  struct filling f = { .pool = p,
+                       .front = front,
                        .sizing = sizing,
                        .options = options,
                        .seconds = p->time_limit + p->time_limit_per_face *
                                                     (double)front->n_face };
-  struct vg_link l = { .stop = &options->stop, .silence = silence * f.seconds };
   double t = vg_clock();
-  struct vg_child c;
-  enum outcome o;
   vg_status st;
 
   assert(p && sizing && options && report);
   assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
   if (!front->n_face) return VG_OK;
   if (p->is_helper) VG_TRY(find_holes(front, &f.n_hole, &f.hole, err));
-  VG_TRY(borrow(p, &c, &l, err));
-  f.link = &l;
-  o = run_job(&f);
-  if (l.state == VG_LINK_STOPPED) o = STOPPED;
-  if (p->is_helper) vg_helper_close(&c);
-  else if (o == FILLED || o == FAILED) give_back(p, &c);
-  else vg_child_close(&c);
+  do st = vg_helper_repeat(attempt, &f, &options->stop, err);
+  while (st == VG_BLOCKED);
+  if (st < 0) goto done;
   st = VG_NOT_BETTER;
-  switch (o) {
+  switch (f.outcome) {
   case FILLED: st = judge(&f, out, report, err); break;
-  case STOPPED: st = vg_stopped(&options->stop, err); break;
   case TOO_MANY:
     st = vg_fail(err, VG_ERR_UNSUPPORTED, "a void needs more than %llu points",
                  (unsigned long long)options->point_limit);
     break;
   case FAILED: report->n_other_failed++; break;
-  case ENDED: report->n_other_ended++; break;
+  case CRASHED: report->n_other_ended++; break;
+  case WRONG: report->n_other_wrong++; break;
   }
 done:
   free(f.hole);
-  free(f.x);
-  free(f.cell);
+  release_cells(&f);
   report->time_total += vg_clock() - t;
   report->time_other += vg_clock() - t;
   return st;

@@ -35,52 +35,88 @@ static int are_in_range(size_t n_tet, const uint32_t (*tet)[4], size_t n)
   return 1;
 }
 
-int vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from)
+/* Receive the arrays of an answer. */
+static vg_status take_cells(struct vg_cdt_job *job, struct vg_link *from,
+                            const struct vg_helper_message *a,
+                            struct vg_error *err)
 {
-  struct vg_helper_message a;
-  double(*added)[3] = NULL, (*all)[3] = NULL;
-  uint32_t(*tet)[4] = NULL;
+  double(*added)[3] = vg_link_get_array(from, a->n[0], sizeof *added);
+  double(*all)[3] = added ? vg_alloc(job->n + a->n[0], sizeof *all) : NULL;
+  uint32_t(*tet)[4] = all ? vg_link_get_array(from, a->n[1], sizeof *tet)
+                          : NULL;
+  vg_status st = VG_OK;
 
-  if (!vg_link_get(from, &a, sizeof a) || a.what != VG_HELPER_CELLS ||
-      a.n[0] > n_max || a.n[1] > n_max)
-    return 0;
-  added = vg_link_get_array(from, a.n[0], sizeof *added);
-  if (added) tet = vg_link_get_array(from, a.n[1], sizeof *tet);
-  if (tet && are_in_range(a.n[1], (const uint32_t(*)[4])tet, job->n + a.n[0]))
-    all = vg_alloc(job->n + a.n[0], sizeof *all);
-  if (all) {
+  if (from->state != VG_LINK_OPEN)
+    st = vg_helper_lost(from, 0, "vanguard-tetgen", err);
+  else if (!tet) st = vg_fail_memory(err, "the cells of a pocket");
+  if (st == VG_OK &&
+      are_in_range(a->n[1], (const uint32_t(*)[4])tet, job->n + a->n[0])) {
     memcpy(all, job->x, job->n * sizeof *all);
-    if (a.n[0]) memcpy(all + job->n, added, a.n[0] * sizeof *all);
-    job->n_all = job->n + a.n[0];
-    job->n_tet = a.n[1];
+    if (a->n[0]) memcpy(all + job->n, added, a->n[0] * sizeof *all);
+    job->n_all = job->n + a->n[0];
+    job->n_tet = a->n[1];
     job->all = all;
     job->tet = tet;
     job->st = VG_OK;
   } else {
     free(tet);
+    free(all);
   }
   free(added);
-  return all != NULL;
+  return st;
 }
 
-/* Start a helper that works through the jobs until one of them ends it. done
- * out: number of jobs that need not be tried again in this way. */
-static vg_status run_helper(size_t n_job, struct vg_cdt_job *job, uint32_t way,
-                            size_t *done, struct vg_error *err)
+vg_status vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from,
+                         struct vg_error *err)
 {
+  struct vg_helper_message a = { .what = 0 };
+  int is_there = vg_link_get(from, &a, sizeof a);
+
+  if (is_there && a.what == VG_HELPER_CELLS && a.n[0] <= n_max &&
+      a.n[1] <= n_max)
+    return take_cells(job, from, &a, err);
+  if (is_there && a.what == VG_HELPER_NONE) return VG_BLOCKED;
+  if (a.what != VG_HELPER_FAILED) a.option = 0;
+  if (a.option == VG_HELPER_CRASHED)
+    return job->n_crash++ ? VG_BLOCKED : VG_NOT_BETTER;
+  return vg_helper_lost(from, a.option, "vanguard-tetgen", err);
+}
+
+/* The jobs from `next` to `end`, with the first set of switches `way`. */
+struct jobs {
+  struct vg_cdt_job *job;
+  size_t next, end;
+  uint32_t way;
+};
+
+/* Start a helper that works through jobs until one of them ends it. */
+static vg_status run_helper(void *user, struct vg_error *err)
+{
+  struct jobs *j = user;
   struct vg_child c;
   struct vg_link l;
   vg_status st = vg_helper_open(VG_HELPER_TETGEN, NULL, silence, &c, &l, err);
 
-  *done = 0;
   if (st < 0) return st;
-  while (*done < n_job && ask(&job[*done], way, &l) &&
-         vg_cdt_receive(&job[*done], &l))
-    ++*done;
-  /* The job is at fault, unless the child ended with its server. */
-  if (*done < n_job && (c.pid || vg_child_server_is_alive())) ++*done;
+  while (j->next < j->end && st == VG_OK) {
+    st = ask(&j->job[j->next], j->way, &l)
+         ? vg_cdt_receive(&j->job[j->next], &l, err)
+         : vg_helper_lost(&l, 0, "vanguard-tetgen", err);
+    if (st == VG_OK || st == VG_BLOCKED) j->next++;
+  }
   vg_helper_close(&c);
-  return VG_OK;
+  return st < 0 ? st : VG_OK;
+}
+
+static vg_status run(struct vg_cdt_job *job, size_t next, size_t end,
+                     uint32_t way, struct vg_error *err)
+{
+  struct jobs j = { job, next, end, way };
+  vg_status st = VG_OK;
+
+  while (j.next < j.end && st == VG_OK)
+    st = vg_helper_repeat(run_helper, &j, NULL, err);
+  return st;
 }
 
 static vg_status prepare(size_t n_job, struct vg_cdt_job *job,
@@ -89,6 +125,7 @@ static vg_status prepare(size_t n_job, struct vg_cdt_job *job,
   for (size_t k = 0; k < n_job; k++) {
     job[k].st = VG_ERR_GEOMETRY;
     job[k].n_all = job[k].n_tet = 0;
+    job[k].n_crash = 0;
     job[k].all = NULL;
     job[k].tet = NULL;
   }
@@ -105,23 +142,18 @@ vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err)
 {
   struct vg_helper h;
-  size_t done = 0;
   vg_status st;
 
   VG_TRY(prepare(n_job, job, err));
   vg_helper_find(VG_HELPER_TETGEN, &h);
   if (!h.is_found) {
-    vg_fail(err, VG_ERR_UNSUPPORTED, "%s", h.why);
-    st = VG_BLOCKED;
+    st = h.is_unusable ? VG_ERR_IO : VG_BLOCKED;
+    vg_fail(err, h.is_unusable ? st : VG_ERR_UNSUPPORTED, "%s", h.why);
     goto done;
   }
-  for (size_t next = 0; next < n_job; next += done)
-    VG_TRY(run_helper(n_job - next, job + next, 0, &done, err));
-  for (size_t k = 0; k < n_job; k += done) {
-    done = 1;
-    if (job[k].st != VG_OK)
-      VG_TRY(run_helper(1, job + k, ways - 1, &done, err));
-  }
+  VG_TRY(run(job, 0, n_job, 0, err));
+  for (size_t k = 0; k < n_job; k++)
+    if (job[k].st != VG_OK) VG_TRY(run(job, k, k + 1, ways - 1, err));
 done:
   return st;
 }

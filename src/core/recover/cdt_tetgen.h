@@ -22,7 +22,8 @@ struct vg_cdt_job {
   const uint32_t (*tri)[3]; /* in: [n_tri], any orientation, must not cross
                                each other */
   vg_status st;             /* out: VG_OK, or VG_ERR_GEOMETRY if TetGen
-                               failed */
+                               failed on the triangles */
+  int n_crash;              /* crashes of TetGen so far */
   size_t n_all, n_tet;      /* out: number of all points, >= n; number of
                                tetrahedra */
   double (*all)[3];         /* out: [n_all], the first n equal to x */
@@ -33,15 +34,16 @@ struct vg_cdt_job {
  * of its points, with every triangle as a face of cells. The result is not
  * trusted: callers must verify it. The caller frees all and tet of jobs whose
  * st is VG_OK (otherwise they are NULL). Threads: re-entrant. Same bytes for
- * the same job. Returns VG_BLOCKED if there is no vanguard-tetgen: no job has
- * run, and err says why; VG_ERR_MEMORY if memory or a process is refused,
- * VG_ERR_IO if the helper no longer starts (in both cases some jobs may not
- * have run: st VG_ERR_GEOMETRY), else VG_OK. */
+ * the same job. Returns VG_BLOCKED if vanguard-tetgen is not installed: no job
+ * has run, and err says why; VG_ERR_MEMORY or VG_ERR_IO if a job twice got no
+ * answer (vg_helper_repeat), so that some jobs have not run; else VG_OK. */
 vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
 
-/** Receive the answer to a job and store it there. Returns 0 if the helper has
- * ended or its answer is invalid. */
-int vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from);
+/** Receive the answer to a job and store it there. VG_BLOCKED: TetGen failed,
+ * and the helper ends; VG_NOT_BETTER: so does a crash, which must happen twice.
+ * VG_ERR_MEMORY, VG_ERR_IO: there is no valid answer. */
+vg_status vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from,
+                         struct vg_error *err);
 
 #endif

@@ -167,6 +167,11 @@ static vg_status check_number(struct vg_remesh_job *j, struct vg_error *err)
 {
   j->n_expected = expected_number(j);
   if (j->n_expected < TRIANGLES) return VG_OK;
+  if (!isfinite(j->n_expected))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the areas of the triangles, or their target edge lengths, "
+                   "are beyond the range of numbers; check the coordinates and "
+                   "the unit");
   return vg_fail(err, VG_ERR_INPUT,
                  "the remeshed surface would have some %.2g triangles; check "
                  "that sizes and tolerance are in the unit of the surface",

@@ -30,6 +30,7 @@ struct vg_wrap_options {
                           are wrapped. */
   uint8_t *empty;      /* out: [n_patch] 1: the patch had triangles and has none
                           after the wrap; may be NULL. */
+  size_t most;         /* Points that CGAL may insert; 0: VG_WRAP_MOST / 2. */
   struct vg_stop stop; /* Polled for every facet. */
   /* Called with the number of inserted points and its forecast; may be NULL. */
   void (*progress)(void *user, size_t done, size_t expected);
@@ -114,8 +115,17 @@ vg_status vg_wrap_foresee(const struct vg_mesh *m,
                           const struct vg_wrap_options *o,
                           struct vg_wrap_forecast *f, struct vg_error *err);
 
+/** Find a point of a triangle that is farther from all others than 20 times
+ * their extent, or one of two or three such points.
+ *
+ * @param point  out: its index
+ * @param tri    out: a triangle with it
+ * Returns 1, 0 without such a point, or -1 if memory is refused. O(n). */
+int vg_wrap_far_point(const struct vg_mesh *m, uint32_t *point, size_t *tri);
+
 /** Find a size at which vg_wrap succeeds: about 10,000 triangles, or fewer if
- * finer wraps go through holes. Sizes are tried on a copy.
+ * finer wraps go through holes. Sizes are tried on a copy, each with 15,000
+ * inserted points at most (VG_ERR_INPUT: they are not enough).
  *
  * @param stop    may be NULL
  * @param size    out: 0 for VG_WRAP_SHEETS

@@ -17,6 +17,7 @@
 /* A request, and the process that answers it. */
 struct request {
   struct vg_helper_message m;
+  uint64_t most; /* points of a wrap */
   struct vg_child child;
   struct vg_link link;
 };
@@ -49,13 +50,16 @@ static vg_status refuse(struct request *r, struct vg_error *err)
     return vg_fail_memory(err, "a wrap; take a larger size");
   case VG_HELPER_TOO_MANY:
     return vg_fail(err, VG_ERR_INPUT,
-                   "a wrap was stopped at %.2g triangles before it was "
-                   "complete: take a larger size",
-                   VG_WRAP_MOST);
+                   "a wrap was stopped at %llu points before it was complete: "
+                   "take a larger size",
+                   (unsigned long long)r->most);
   case VG_HELPER_DEGENERATE:
     return vg_fail(err, VG_ERR_INPUT,
                    "the surface cannot be wrapped: all triangles are "
                    "degenerate");
+  case VG_HELPER_CRASHED:
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "CGAL crashed on the surface; take a larger size");
   default:
     return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: %s",
                    text);
@@ -64,19 +68,7 @@ static vg_status refuse(struct request *r, struct vg_error *err)
 
 static vg_status explain(const struct request *r, struct vg_error *err)
 {
-  switch (r->link.state) {
-  case VG_LINK_STOPPED: return vg_stopped(r->link.stop, err);
-  case VG_LINK_NO_MEMORY: return vg_fail_memory(err, "a wrap");
-  case VG_LINK_SILENT:
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "vanguard-wrap did not answer for %d seconds and was ended; "
-                   "take a larger size",
-                   SILENCE);
-  default:
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "vanguard-wrap ended before it answered, because CGAL "
-                   "crashed or the memory was exhausted; take a larger size");
-  }
+  return vg_helper_lost(&r->link, 0, "vanguard-wrap", err);
 }
 
 /* Start a helper and send it a request. */
@@ -106,14 +98,12 @@ static vg_status receive(struct request *r, uint32_t what, struct vg_error *err)
   if (!vg_link_get(&r->link, &r->m, sizeof r->m)) return explain(r, err);
   if (r->m.what == VG_HELPER_FAILED) return refuse(r, err);
   if (r->m.what == what || r->m.what == VG_HELPER_PROGRESS) return VG_OK;
-  return vg_fail(err, VG_ERR_GEOMETRY,
-                 "vanguard-wrap sent an answer that this program does not "
-                 "know; install the helper of this version of Vanguard");
+  return explain(r, err);
 }
 
 static vg_status damaged(struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_GEOMETRY,
+  return vg_fail(err, VG_ERR_IO,
                  "the answer of vanguard-wrap is damaged: counts or indices "
                  "are out of range");
 }
@@ -143,9 +133,11 @@ vg_status vg_wrap_cgal(const struct vg_mesh *m, const struct vg_wrap_options *o,
                        size_t expected, struct vg_mesh *out,
                        struct vg_error *err)
 {
-  struct request r = { .m = {
+  const uint64_t most = o->most ? o->most : (uint64_t)(VG_WRAP_MOST / 2);
+  struct request r = { .most = most,
+                       .m = {
                          .what = VG_HELPER_WRAP,
-                         .n = { 0, 0, (uint64_t)(VG_WRAP_MOST / 2) },
+                         .n = { 0, 0, most },
                          .value = { o->size, o->size * VG_WRAP_OFFSET } } };
   vg_status st = ask(&r, m, 0, NULL, &o->stop, err);
 

@@ -18,12 +18,17 @@
 #include "io/stream/convention.h"
 
 #define POLL_MS 100
-#define TEXT_MAX 2048 /* longest message from the child */
+#define CRASHED 1 /* code of VG_CAD_TELL_FAIL: no vg_status */
+/* Default time limit. */
+#define SECONDS 360.0         /* S15 */
+#define SECONDS_PER_BYTE 6e-5 /* S15 */
+#define TEXT_MAX 2048         /* longest message from the child */
 
 struct vg_cad {
   struct vg_child child;
   int is_open, has_model;
   struct vg_cad_options o; /* options of the last parse */
+  double limit;            /* seconds */
   char stage[80];          /* current stage, for messages */
 };
 
@@ -102,6 +107,7 @@ static void serve(int fd)
 {
 #ifdef VG_CAD_LIBRARY
   const struct vg_cad_wire wire = { vg_child_put, vg_child_get };
+  const struct vg_cad_tell crash = { VG_CAD_TELL_FAIL, CRASHED, 0 };
   struct vg_cad_tell gone = { VG_CAD_TELL_FAIL, VG_ERR_UNSUPPORTED, 0 };
   void *library = dlopen(VG_CAD_LIBRARY, RTLD_NOW | RTLD_LOCAL), *at;
   const char *why = library ? NULL : dlerror();
@@ -109,6 +115,7 @@ static void serve(int fd)
   vg_occt_entry *entry;
 
   at = library ? dlsym(library, VG_OCCT_ENTRY) : NULL;
+  vg_child_answer_crashes(fd, &crash, NULL, sizeof crash);
   if (at) {
     memcpy(&entry, &at, sizeof entry);
     entry(fd, &wire);
@@ -175,6 +182,7 @@ struct call {
   const char *path;
   const struct vg_cad_options *o;
   double start;
+  int is_crash;
 };
 
 static vg_status gone(struct call *k, struct vg_error *err)
@@ -183,10 +191,16 @@ static vg_status gone(struct call *k, struct vg_error *err)
 
   strcpy(stage, k->cad->stage);
   end_child(k->cad);
-  return vg_fail(err, VG_ERR_GEOMETRY,
-                 "%s: Open CASCADE ended without an answer (a crash, or not "
-                 "enough memory) while %s; the file may be damaged: export "
-                 "it again, or try another format (STEP, IGES, BREP)",
+  if (k->is_crash)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%s: Open CASCADE crashed while %s; the file may be "
+                   "damaged: export it again, or try another format (STEP, "
+                   "IGES, BREP)",
+                   k->path, stage);
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: Open CASCADE ended without an answer while %s. If it was "
+                 "killed for lack of memory (see dmesg), free memory and "
+                 "repeat the command",
                  k->path, stage);
 }
 
@@ -203,12 +217,12 @@ static vg_status await(struct call *k, struct vg_error *err)
       return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while it was read",
                      k->path);
     }
-    if (o && o->seconds > 0 && vg_clock() - k->start > o->seconds) {
+    if (vg_clock() - k->start > k->cad->limit) {
       end_child(k->cad);
-      return vg_fail(err, VG_ERR_GEOMETRY,
+      return vg_fail(err, VG_ERR_IO,
                      "%s: Open CASCADE exceeded the time limit of %g s "
-                     "while %s (setting cad_seconds; 0: no limit)",
-                     k->path, o->seconds, k->cad->stage);
+                     "while %s; if the file is in order, raise cad_seconds",
+                     k->path, k->cad->limit, k->cad->stage);
     }
   } while (poll(&p, 1, POLL_MS) <= 0);
   return VG_OK;
@@ -242,6 +256,8 @@ static vg_status next(struct call *k, struct vg_cad_tell *t,
     VG_TRY(await(k, err));
     VG_TRY(take(k, t, sizeof *t, err));
     if (t->what > VG_CAD_TELL_FAIL) return VG_OK;
+    k->is_crash = t->what == VG_CAD_TELL_FAIL && t->code == CRASHED;
+    if (k->is_crash) return gone(k, err);
     VG_TRY(take_text(k, t, text, err));
     if (t->what == VG_CAD_TELL_NOTE) {
       if (k->o && k->o->note) k->o->note(k->o->user, text);
@@ -514,14 +530,11 @@ done:
   return st;
 }
 
-/* Did the child end by itself while it united solids? */
+/* Without the union, the surface is another one, so that only a crash of the
+ * library selects it. */
 static int crashed_uniting(const struct call *k)
 {
-  const struct vg_cad_options *o = k->o;
-
-  return !k->cad->is_open && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE) &&
-         !(o->seconds > 0 && vg_clock() - k->start > o->seconds) &&
-         !vg_stops(&o->stop);
+  return k->is_crash && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE);
 }
 
 static vg_status parse(struct vg_cad *c, struct vg_input *in,
@@ -529,7 +542,7 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
                        int with_volume, struct vg_cad_surface *out,
                        struct vg_error *err)
 {
-  struct call k = { c, in->path, o, vg_clock() };
+  struct call k = { c, in->path, o, vg_clock(), 0 };
   struct vg_input view = *in;
   vg_status st;
 
@@ -541,6 +554,8 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
+  c->limit = o->seconds > 0 ? o->seconds
+                            : SECONDS + SECONDS_PER_BYTE * (double)in->size;
   send_file(&k, &view, kind, o->keeps_solids ? 2 : 0, with_volume);
   st = await_surface(&k, out, err);
   if (st < 0 && crashed_uniting(&k)) {
@@ -570,7 +585,7 @@ vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err)
 {
   const struct vg_cad_ask ask = question(VG_CAD_ASK_AGAIN, 0, 0, o);
-  struct call k = { c, "the CAD model", o, vg_clock() };
+  struct call k = { c, "the CAD model", o, vg_clock(), 0 };
 
   assert(o && out);
   if (!c->has_model) return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
@@ -627,7 +642,7 @@ vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
     [VG_CAD_ON_TRIANGLES] = VG_CAD_ASK_TRIANGLES
   };
   const struct vg_cad_ask ask = { .n = n, .what = what[on] };
-  struct call k = { c, "the CAD model", &c->o, vg_clock() };
+  struct call k = { c, "the CAD model", &c->o, vg_clock(), 0 };
   double(*to)[3] = NULL, *far = NULL;
   struct vg_cad_tell t;
   vg_status st = VG_OK;

@@ -75,7 +75,7 @@ struct vg_cad_options {
    * is collapsed, and the limit of division is 1e-7 of the diagonal of the
    * bounding box, or 1e-6 of that of the median face, whichever is larger. */
   double least;
-  double seconds;   /* time limit; 0: none */
+  double seconds;   /* time limit; 0: 360 and 60 per megabyte of the file */
   int keeps_solids; /* 1: solids that touch or overlap are triangulated one by
                        one, each with all its faces; 0: they are united */
   /* Receives lines for a report: the unit, and the faces and edges that were
@@ -86,7 +86,7 @@ struct vg_cad_options {
 };
 #define VG_CAD_OPTIONS_INIT                                                    \
   {                                                                            \
-    .chord = 2e-3, .angle = 15, .seconds = 3600                                \
+    .chord = 2e-3, .angle = 15                                                 \
   } /* S15 */
 
 /** A triangulated model. Faces and curves have the numbers of the file's faces
@@ -142,9 +142,9 @@ void vg_cad_close(struct vg_cad *c);
  * o->tolerance. Faces that could not be triangulated, and edges with only one
  * face, are noted and remain open.
  * VG_ERR_FORMAT: the file is truncated, or not of this kind; VG_ERR_INPUT: it
- * has no faces; VG_ERR_GEOMETRY: Open CASCADE crashed, or took longer than
- * o->seconds; VG_ERR_IO: stopped. *out is unchanged on failure.
- * Threads: one at a time for each child. */
+ * has no faces; VG_ERR_GEOMETRY: Open CASCADE crashed; VG_ERR_IO: it took
+ * longer than o->seconds, or was killed; VG_ERR_STOPPED. *out is unchanged on
+ * failure. Threads: one at a time for each child. */
 vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err);

@@ -482,21 +482,50 @@ vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
   return VG_OK;
 }
 
+/* Open a node's data. Links, external storage and virtual data sets would show
+ * bytes of other files, so they are refused with VG_ERR_UNSUPPORTED. *set is
+ * invalid if there are no data. */
+static vg_status open_data(const struct vg_cgns_tree *t, hid_t node,
+                           const char *what, hid_t *set, struct vg_error *err)
+{
+  H5L_info_t link = { .type = H5L_TYPE_ERROR };
+  hid_t plist;
+  int is_own;
+
+  *set = -1;
+  if (H5Lexists(node, DATA, H5P_DEFAULT) <= 0 ||
+      H5Lget_info(node, DATA, &link, H5P_DEFAULT) < 0)
+    return VG_OK;
+  if (link.type == H5L_TYPE_HARD) *set = H5Dopen2(node, DATA, H5P_DEFAULT);
+  plist = *set >= 0 ? H5Dget_create_plist(*set) : -1;
+  is_own = link.type == H5L_TYPE_HARD &&
+           (plist < 0 || (H5Pget_layout(plist) != H5D_VIRTUAL &&
+                          H5Pget_external_count(plist) <= 0));
+  if (plist >= 0) H5Pclose(plist);
+  if (is_own) return VG_OK;
+  if (*set >= 0) H5Dclose(*set);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: %s: the data are in another file or at another location; "
+                 "write a single file without links, external storage and "
+                 "virtual data sets",
+                 t->path, what);
+}
+
 /* Read data as values of `size` bytes of a native type, with space for one
  * more. */
 static vg_status get_data(struct vg_cgns_tree *t, int64_t id, const char *what,
                           H5T_class_t class, hid_t native, size_t size,
                           void **out, size_t *n, struct vg_error *err)
 {
-  hid_t set = H5Lexists(id, DATA, H5P_DEFAULT) > 0
-              ? H5Dopen2(id, DATA, H5P_DEFAULT)
-              : -1;
-  hid_t type = set >= 0 ? H5Dget_type(set) : -1;
-  hid_t space = set >= 0 ? H5Dget_space(set) : -1;
-  hssize_t count = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
-  vg_status st = VG_OK;
+  hid_t set, type, space;
+  hssize_t count;
+  vg_status st = open_data(t, id, what, &set, err);
   void *v = NULL;
 
+  if (st < 0) return st;
+  type = set >= 0 ? H5Dget_type(set) : -1;
+  space = set >= 0 ? H5Dget_space(set) : -1;
+  count = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
   if (type < 0 || count < 0 || H5Tget_class(type) != class)
     st = vg_fail(err, VG_ERR_FORMAT,
                  "%s: %s: the data are missing or do not have the expected "

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+#include <sys/resource.h>
+
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <IGESCAFControl_Reader.hxx>
@@ -464,6 +466,38 @@ size_t count_iges_faces(const Handle(IGESData_IGESModel) & file)
   return n;
 }
 
+/* While it exists, this process opens no file. The translators of Open CASCADE
+ * would read the files that a file names, from anywhere. */
+class NoOtherFile
+{
+public:
+  NoOtherFile()
+  {
+    getrlimit(RLIMIT_NOFILE, &was_);
+    rlimit none = was_;
+    none.rlim_cur = 0;
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoOtherFile()
+  {
+    setrlimit(RLIMIT_NOFILE, &was_);
+  }
+  NoOtherFile(const NoOtherFile &) = delete;
+  NoOtherFile &operator=(const NoOtherFile &) = delete;
+
+private:
+  rlimit was_;
+};
+
+/* Translate the file that the reader has read. */
+template <typename Reader>
+bool transfer(Reader &reader, Handle(TDocStd_Document) & doc)
+{
+  const NoOtherFile guard;
+
+  return reader.Transfer(doc);
+}
+
 /* --- formats ------------------------------------------------------------- */
 
 void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
@@ -484,7 +518,11 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
     "xstep.cascade.unit",
     choose_unit(ask, given, called.c_str(), model, talk).open_cascade);
   talk.stage("translating its entities");
-  if (!reader.Transfer(doc)) throw not_converted(reader.Reader().WS(), "STEP");
+  if (!transfer(reader, doc)) throw not_converted(reader.Reader().WS(), "STEP");
+  if (!reader.ExternFiles().IsEmpty())
+    talk.note(format("the file refers to %d other files, which are never read: "
+                     "export the assembly as a single file",
+                     static_cast<int>(reader.ExternFiles().Size())));
   note_failures(reader.Reader().WS(), talk);
   collect(Words(doc, reader.Reader().WS()), model);
 }
@@ -513,7 +551,7 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
     file->ChangeGlobalSection().SetCascadeUnit(to.mm);
   }
   talk.stage("translating its entities");
-  if (!reader.Transfer(doc)) throw not_converted(reader.WS(), "IGES");
+  if (!transfer(reader, doc)) throw not_converted(reader.WS(), "IGES");
   note_failures(reader.WS(), talk);
   collect(Words(doc, reader.WS()), model);
 }

@@ -77,8 +77,7 @@ struct vg_node *vg_node_new(const char *path, struct vg_front *front)
 
 int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 {
-  if (n->is_final || n->retry >= VG_RETRIES ||
-      strlen(n->path) + 8 >= VG_PATH_MAX)
+  if (n->is_final || n->retry >= VG_RETRIES || strlen(n->path) > VG_PATH_CUT)
     return 0;
   if (!n->is_planned) {
     vg_lattice_release(&n->lattice);

@@ -21,7 +21,8 @@ struct put {
   struct place {
     size_t point, face;
   } * at; /* [n->n_work] Index of the first new point and face of each task. */
-  int8_t *crosses; /* [n->n_work] 1: the change crosses the front. */
+  int8_t *crosses;        /* [n->n_work] 1: the change crosses the front. */
+  _Atomic size_t n_twice; /* Faces that two tasks consumed. */
 };
 
 /* Copies the new points, and tests the new faces while the whole front still
@@ -45,30 +46,37 @@ static void test_part(void *context, size_t first, size_t end, int worker)
 
 /* Appends the faces that the task made, and marks consumed faces as gone. No
  * two tasks of a stage make cells on the same face, since walls keep them
- * apart. Nothing is kept of a change that crosses the front. */
-static void put_change(struct vg_node *n, size_t i, const struct place *at,
-                       int crosses)
+ * apart. Nothing is kept of a change that crosses the front. Returns the number
+ * of faces that were already gone. */
+static size_t put_change(struct vg_node *n, size_t i, const struct place *at,
+                         int crosses)
 {
   struct vg_change *c = &n->change[i];
   struct vg_front *f = &n->front;
+  size_t n_twice = 0;
 
-  for (size_t k = 0; k < c->made.n_consumed && !crosses; k++)
-    f->face[n->face[i][c->made.consumed[k]]][0] = VG_FACE_GONE;
+  for (size_t k = 0; k < c->made.n_consumed && !crosses; k++) {
+    uint32_t *face = f->face[n->face[i][c->made.consumed[k]]];
+
+    n_twice += __atomic_exchange_n(&face[0], VG_FACE_GONE, __ATOMIC_RELAXED) ==
+               VG_FACE_GONE;
+  }
   for (size_t k = 0; k < c->made.n_face; k++)
     for (int j = 0; j < 3; j++)
       f->face[at->face + k][j] = crosses ? VG_FACE_GONE
                                          : vg_node_point(n, i, at->point,
                                                          c->made.face[k][j]);
+  return n_twice;
 }
 
 static void put_part(void *context, size_t first, size_t end, int worker)
 {
-  const struct put *p = context;
+  struct put *p = context;
   struct vg_node *n = p->n;
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    put_change(n, i, &p->at[i], p->crosses[i]);
+    p->n_twice += put_change(n, i, &p->at[i], p->crosses[i]);
     vg_change_release(&n->change[i]);
     free(n->point[i]);
     free(n->face[i]);
@@ -170,7 +178,12 @@ vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
   }
   if (st == VG_OK) {
     vg_engine_loop(e, n->n_work, 1, put_part, &put);
-    st = label_points(n, e, err);
+    st = put.n_twice
+         ? vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: %zu faces of the front were consumed twice; please "
+                   "report this with the project files",
+                   n->path, put.n_twice)
+         : label_points(n, e, err);
   }
   free(put.at);
   free(put.crosses);

@@ -93,6 +93,7 @@ static vg_status number(struct vg_partition *p, size_t n, const struct share *s,
   if (!p->place || !p->point_at || !p->cell_at || !p->domain)
     return vg_fail_memory(err, "numbering the mesh");
   for (size_t k = 0; k < n; k++) {
+    assert(!k || strcmp(s[k - 1].path, s[k].path) != 0);
     p->place[k].serial = s[k].serial;
     p->place[k].point = point;
     if (s[k].rank == (uint64_t)p->rank) {

@@ -21,7 +21,7 @@ void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
   assert(to >= 0 && to < e->size && kind >= VG_MSG_UPDATE);
   assert(kind <= VG_MSG_OUTCOME);
   if (!b->data || vg_comm_post(e->comm, to, kind, b, NULL) < 0)
-    vg_comm_abort(e->comm, 1);
+    vg_comm_abort(e->comm, 1, VG_ENGINE_NO_MEMORY);
   e->sent[to]++;
   e->poll_soon = 1;
   vg_engine_wake(e);

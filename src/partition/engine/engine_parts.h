@@ -38,6 +38,11 @@
 
 #include "partition/engine/engine.h"
 
+/* Why a rank ends the job. */
+#define VG_ENGINE_NO_MEMORY                                                    \
+  "no memory is left for messages between ranks, and the job ends; use fewer " \
+  "ranks per node or more nodes"
+
 enum {
   VG_MSG_UPDATE = 1,
   VG_MSG_FREE,

@@ -250,7 +250,7 @@ static void take_short(struct vg_engine *e, const struct vg_message *m)
 static void lose(struct vg_engine *e, const struct vg_message *m)
 {
   if (m->kind != VG_MSG_INPUT && m->kind != VG_MSG_OUTCOME)
-    vg_comm_abort(e->comm, 1);
+    vg_comm_abort(e->comm, 1, VG_ENGINE_NO_MEMORY);
   vg_notify_dropped(e, 0);
 }
 
@@ -292,7 +292,7 @@ static int receive(struct vg_engine *e, double *failing)
     vg_notify_fail(e, st, "", &err);
     vg_engine_unlock(e);
   } else if (vg_clock() - *failing > PATIENCE) {
-    vg_comm_abort(e->comm, 1);
+    vg_comm_abort(e->comm, 1, VG_ENGINE_NO_MEMORY);
   }
   return n;
 }

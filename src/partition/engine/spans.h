@@ -10,7 +10,9 @@
 
 #include "base/status.h"
 
-enum { VG_PATH_MAX = 64 };
+/* Voids with longer paths than VG_PATH_CUT characters are not cut, so that
+ * there is room for the suffixes of their parts and tasks: paths are unique. */
+enum { VG_PATH_MAX = 96, VG_PATH_CUT = 55 };
 
 /* Kinds of task. */
 enum {

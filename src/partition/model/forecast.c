@@ -457,7 +457,7 @@ static vg_status go_down(struct forecast *c, struct vg_subdomain *p,
   vg_status st = VG_OK;
   int used = 0;
 
-  if (p->retry < VG_RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
+  if (p->retry < VG_RETRIES && strlen(p->path) <= VG_PATH_CUT)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
   if (used <= 0)
     return add_leaf(c, p, amount_of(&p->load), volume_of(&p->load), after);

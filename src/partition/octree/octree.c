@@ -288,7 +288,8 @@ static vg_status check(const struct maker *m, struct vg_error *err)
     const size_t bad = vg_front_open_edges(&p->part[k].front);
 
     sum += volume;
-    if (bad)
+    if (bad == SIZE_MAX) st = vg_fail_memory(err, "the check of subdomains");
+    else if (bad)
       st = vg_fail(err, VG_ERR_GEOMETRY,
                    "subdomain %zu of %zu of the octree is "
                    "not closed at %zu edges; check that the front is closed",

@@ -325,6 +325,12 @@ static vg_status check_farfield(const struct vg_boundary *b,
   /* Area of a sphere divided by that of a triangle. */
   n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;
   if (far->kind == VG_FARFIELD_NONE || n < FARFIELD_TRIANGLES) return VG_OK;
+  if (!isfinite(n))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the farfield of a body from (%g, %g, %g) to (%g, %g, %g) "
+                   "exceeds the range of numbers; check the coordinates and "
+                   "the unit",
+                   lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
   return vg_fail(err, VG_ERR_INPUT,
                  "a farfield of size %g with edges of length %g would have "
                  "about %.2g triangles; check that its spacing and hmax are "

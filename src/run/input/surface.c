@@ -110,7 +110,7 @@ static vg_status check(struct vg_boundary *b, int external,
 static vg_status defects(struct vg_boundary *b, struct vg_display *show,
                          struct vg_error *err)
 {
-  char remedy[120];
+  char remedy[200];
 
   if (!b->check.n_defect && !b->surface.n_tri)
     return vg_fail(err, VG_ERR_GEOMETRY,
@@ -457,7 +457,7 @@ static int shells_cross(const struct vg_boundary *b)
 static vg_status refuse(struct vg_boundary *b, const struct vg_error *why,
                         struct vg_display *show, struct vg_error *err)
 {
-  char remedy[120];
+  char remedy[200];
 
   b->remedy = VG_REMEDY_NOW;
   vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);

@@ -150,6 +150,8 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   struct vg_error why = VG_ERROR_INIT;
   enum vg_wrap_reason reason;
   double wrap = 0;
+  uint32_t far;
+  size_t tri;
 
   *text = 0;
   if (b->remedy != VG_REMEDY_NOW) b->remedy = VG_REMEDY_ASKED;
@@ -157,6 +159,15 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
       b->read->settings.wrap > 0 || b->flow.kind == VG_FLOW_INTERNAL ||
       n[VG_DEFECT_NOT_FINITE] || n[VG_DEFECT_NO_BC] == b->check.n_defect)
     return;
+  if (vg_wrap_far_point(&b->surface, &far, &tri) > 0) {
+    const double *x = b->surface.point[far];
+
+    snprintf(text, size,
+             "; point %u (%g, %g, %g) of triangle %zu is far away from all "
+             "others: correct it first",
+             far + 1, x[0], x[1], x[2], tri + 1);
+    return;
+  }
   vg_display_update(show, "searching for a wrap size", 0, 0);
   if (vg_wrap_suggest(&b->surface, &stop, &wrap, &reason, &why) < 0) return;
   if (reason == VG_WRAP_SHEETS)

@@ -396,8 +396,8 @@ static void other_text(FILE *to, const struct vg_fill_report *r)
   if (back)
     fprintf(to,
             "  subdomains filled by the built-in mesher instead: %zu "
-            "(%zu rejected by the selected\n  mesher, %zu crashed or timed "
-            "out, %zu with an invalid result)\n",
+            "(%zu rejected by the selected\n  mesher, %zu crashed, "
+            "%zu with an invalid result)\n",
             back, r->n_other_failed, r->n_other_ended, r->n_other_wrong);
 }
 

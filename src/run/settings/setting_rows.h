@@ -102,7 +102,7 @@ VG_ROW(REAL, cad, angle, "cad_angle", 0,
   "circle); 0: 8 if the surface is remeshed, else 15")
 VG_ROW(REAL, cad, seconds, "cad_seconds", cad.seconds,
   .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "s", .help = "Time limit for "
-  "reading a CAD file; 0: none")
+  "reading a CAD file; 0: 360 s and 60 s per megabyte of the file")
 VG_ROW(REAL, plain, weld, "weld", 0,
   .topic = VG_TOPIC_SURFACE,
   LENGTH, .help = "Merge points that are closer than this distance; 0: merge "
@@ -179,6 +179,10 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
   .keeps_mesh = 1, .hi = 9e15, .unit = "cells", .help = "Stop if the "
   "mesh, including its layers, would have more cells than "
         "this; 0: no limit")
+VG_ROW(REAL, plain, rank_silence, "rank_silence", 60,
+  .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "s", .help = "End the run if a "
+  "rank gives no sign of life for this time, because its node or the network "
+  "has failed; 0: never")
 VG_ROW(REAL, plain, max_memory, "max_memory", 0,
   .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "GB", .help = "Memory that all "
   "ranks of a node may use together. The run ends before the fill if its "

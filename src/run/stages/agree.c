@@ -16,7 +16,6 @@ struct claim {
   uint64_t counts; /* 1: the first rank of its node. */
   struct vg_digest of[VG_AGREE_N];
   char host[64];
-  char tetgen[192]; /* identity of vanguard-tetgen, or "none" */
 };
 
 const char *vg_agree_name(enum vg_agree what)
@@ -49,15 +48,12 @@ static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
                                const struct vg_sizing *sizing,
                                enum vg_agree change)
 {
-  struct vg_helper h;
   struct claim own;
 
   memset(&own, 0, sizeof own);
   if (gethostname(own.host, sizeof own.host - 1)) own.host[0] = '?';
   own.counts = vg_comm_node_rank(c) == 0;
   if (!own.counts) return own;
-  vg_helper_find(VG_HELPER_TETGEN, &h);
-  memcpy(own.tetgen, h.identity, strnlen(h.identity, sizeof own.tetgen - 1));
   own.of[VG_AGREE_SURFACE] = of_surface(surface);
   if (layers) vg_layers_show(layers, add, &own.of[VG_AGREE_LAYERS]);
   vg_sizing_show(sizing, add, &own.of[VG_AGREE_SIZES]);
@@ -65,17 +61,6 @@ static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
       vg_comm_rank(c) + vg_comm_node_size(c) == vg_comm_size(c))
     own.of[change].word[0] ^= 1;
   return own;
-}
-
-static vg_status refuse_helper(int r, const struct claim *first,
-                               const struct claim *other, struct vg_error *err)
-{
-  return vg_fail(err, VG_ERR_REMOTE,
-                 "rank %d on %s uses another vanguard-tetgen (%s) than rank 0 "
-                 "on %s (%s); nothing was meshed. Install the same helper "
-                 "programs on all nodes, or name a common folder with "
-                 "--helpers",
-                 r, other->host, other->tetgen, first->host, first->tetgen);
 }
 
 static vg_status compare(int n, const struct vg_bytes *claim,
@@ -86,8 +71,6 @@ static vg_status compare(int n, const struct vg_bytes *claim,
   memcpy(&first, claim[0].data, sizeof first);
   for (int r = 1; r < n; r++) {
     memcpy(&other, claim[r].data, sizeof other);
-    if (other.counts && strcmp(other.tetgen, first.tetgen) != 0)
-      return refuse_helper(r, &first, &other, err);
     for (int k = 0; k < VG_AGREE_N && other.counts; k++)
       if (memcmp(&other.of[k], &first.of[k], sizeof other.of[k]) != 0)
         return vg_fail(err, VG_ERR_REMOTE,
@@ -101,24 +84,86 @@ static vg_status compare(int n, const struct vg_bytes *claim,
   return VG_OK;
 }
 
+/* Gathers `size` bytes of every rank. */
+static vg_status gather(struct vg_comm *c, size_t size, void *data,
+                        struct vg_bytes **all, struct vg_error *err)
+{
+  struct vg_bytes own = { size, data };
+  vg_status st;
+
+  *all = vg_calloc((size_t)vg_comm_size(c), sizeof **all);
+  st = vg_comm_agree(c, *all ? VG_OK : vg_fail_memory(err, "a comparison"),
+                     err);
+  return st < 0 ? st : vg_comm_allgather(c, &own, *all, err);
+}
+
 vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
                        const struct vg_layers *layers,
                        const struct vg_sizing *sizing, enum vg_agree change,
                        struct vg_error *err)
 {
   int n = vg_comm_size(c);
-  struct vg_bytes own, *all = NULL;
+  struct vg_bytes *all = NULL;
   struct claim claim;
   vg_status st;
 
   assert(surface && sizing && change <= VG_AGREE_NOTHING);
   if (n == vg_comm_node_size(c)) return VG_OK;
   claim = make_claim(c, surface, layers, sizing, change);
-  own = (struct vg_bytes){ sizeof claim, (unsigned char *)&claim };
-  all = vg_calloc((size_t)n, sizeof *all);
-  st = vg_comm_agree(c, all ? VG_OK : vg_fail_memory(err, "a comparison"), err);
-  if (st >= 0) st = vg_comm_allgather(c, &own, all, err);
+  st = gather(c, sizeof claim, &claim, &all, err);
   if (st >= 0) st = compare(n, all, err);
   vg_bytes_release(all, all ? (size_t)n : 0);
+  return st;
+}
+
+/* --- helper programs ----------------------------------------------------- */
+
+struct installed {
+  char host[64];
+  char identity[VG_HELPER_N][192]; /* "none": not installed */
+};
+
+static vg_status compare_helpers(int n, const struct vg_bytes *all,
+                                 struct vg_error *err)
+{
+  const struct installed *first = (const void *)all[0].data;
+
+  for (int r = 1; r < n; r++) {
+    const struct installed *other = (const void *)all[r].data;
+
+    for (int k = 0; k < VG_HELPER_N; k++)
+      if (strcmp(other->identity[k], first->identity[k]) != 0)
+        return vg_fail(err, VG_ERR_REMOTE,
+                       "rank %d on %s uses another %s (%s) than rank 0 on %s "
+                       "(%s); nothing was meshed. Install the same helper "
+                       "programs on all nodes, or name a common folder with "
+                       "--helpers",
+                       r, other->host, vg_helper_name((enum vg_helper_kind)k),
+                       other->identity[k], first->host, first->identity[k]);
+  }
+  return VG_OK;
+}
+
+vg_status vg_run_helpers(struct vg_comm *c, struct vg_error *err)
+{
+  struct vg_bytes *all = NULL;
+  struct installed own;
+  struct vg_helper h;
+  vg_status st = VG_OK;
+
+  memset(&own, 0, sizeof own);
+  if (gethostname(own.host, sizeof own.host - 1)) own.host[0] = '?';
+  for (int k = 0; k < VG_HELPER_N; k++) {
+    vg_helper_find((enum vg_helper_kind)k, &h);
+    memcpy(own.identity[k], h.identity, sizeof own.identity[k]);
+    if (k == VG_HELPER_TETGEN && h.is_unusable)
+      st = vg_fail(err, VG_ERR_IO, "%s", h.why);
+  }
+  st = vg_comm_agree(c, st, err);
+  if (st >= 0 && vg_comm_size(c) > 1) {
+    st = gather(c, sizeof own, &own, &all, err);
+    if (st >= 0) st = compare_helpers(vg_comm_size(c), all, err);
+    vg_bytes_release(all, all ? (size_t)vg_comm_size(c) : 0);
+  }
   return st;
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/agree.h: checks that the nodes, each of which computes surface,
- * layers and sizes itself, have obtained the same result, and that they use the
- * same vanguard-tetgen. Uses partition/store,
- * layers, core. */
+ * layers and sizes itself, have obtained the same result, and that all ranks
+ * have the same helper programs. Uses partition/store, layers, core. */
 #ifndef VG_RUN_STAGES_AGREE_H
 #define VG_RUN_STAGES_AGREE_H
 
@@ -36,5 +35,11 @@ vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
                        const struct vg_layers *layers,
                        const struct vg_sizing *sizing, enum vg_agree change,
                        struct vg_error *err);
+
+/** Searches the helper programs on every rank. Collective; call it before a
+ * helper is needed. VG_ERR_IO: vanguard-tetgen is installed, but cannot be used
+ * (runs that need vanguard-wrap stop by themselves); VG_ERR_REMOTE: ranks have
+ * different helpers. Costs some milliseconds. */
+vg_status vg_run_helpers(struct vg_comm *c, struct vg_error *err);
 
 #endif

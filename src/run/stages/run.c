@@ -88,6 +88,8 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   uint64_t is_on = 0;
   vg_status st = VG_OK;
 
+  VG_TRY(vg_comm_watch(r->comm, p->asked.rank_silence, err));
+  VG_TRY(vg_run_helpers(r->comm, err));
   if (leads_node(r)) st = shape_surface(r, p, show, err);
   VG_TRY(vg_problem_share(p, r->comm, leads_node(r), st, err));
   st = leads_node(r) ? settle_surface(r, p, layers, show, err)
@@ -246,6 +248,19 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
                  r->options.dir);
 }
 
+/* A failure of the machine does not lose finished tasks. */
+static vg_status say_kept(const struct vg_run *r, vg_status st,
+                          struct vg_error *err)
+{
+  struct vg_error why = *err;
+
+  if (!r->store || (st != VG_ERR_IO && st != VG_ERR_MEMORY)) return st;
+  return vg_fail(err, st,
+                 "%.700s; finished tasks are kept in %.200s: repeat the "
+                 "command with --resume to continue",
+                 why.text, r->options.dir);
+}
+
 /* --- the field ----------------------------------------------------------- */
 
 /* Opens the mesher of the leaves if it is not the built-in kernel. */
@@ -333,6 +348,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   r->time_near = vg_display_now() - t;
   if (r->store) vg_store_state(r->store, &r->stored);
   if (st == VG_ERR_STOPPED) st = say_stopped(r, err);
+  if (st < 0) st = say_kept(r, st, err);
   if (st >= 0)
     r->n_field_cell = vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:

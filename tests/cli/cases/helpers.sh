@@ -27,7 +27,13 @@ chmod +x empty/vanguard-tetgen
 vanguard mesh -q -p p/box --mesher tetgen --write lb8.ugrid --out n
 exits 1
 says err "cannot be used"
+# Without it, another mesh might be made.
+vanguard mesh -q -p p/box --write lb8.ugrid --out n
+exits 1
+says err "installed but cannot be used"
+absent n/box.lb8.ugrid
 vanguard --version --verbose
+rm empty/vanguard-tetgen
 [ -x "$bin/vanguard-tetgen" ] || skip "built without vanguard-tetgen"
 
 # The option has precedence over the variable, and the folder may have blanks.
@@ -49,10 +55,50 @@ vanguard mesh -q -p p/box --write lb8.ugrid --out r2 --run-dir run --resume
 exits 1
 says err "vanguard-tetgen was"
 
+# A helper that is killed while it works, as if memory had run out, ends the run.
+# The repeated run has the same mesh.
+mkdir mortal
+cat >mortal/vanguard-tetgen <<END
+#!/bin/sh
+if [ -e "$PWD/kill" ]; then
+  "$bin/vanguard-tetgen" --serve </dev/null
+  kill -KILL \$\$
+fi
+exec "$bin/vanguard-tetgen" --serve
+END
+chmod +x mortal/vanguard-tetgen
+for turn in dies resumes; do
+  rm -f kill
+  resume=
+  if [ $turn = dies ]; then touch kill; else resume=--resume; fi
+  vanguard mesh -q -p p/box --helpers mortal --mesher tetgen --leaf-cells 500 \
+    --write lb8.ugrid --out mortal --run-dir kept $resume
+  [ $turn = resumes ] && exits 0 && break
+  exits 1
+  says err "tetgen ended without an answer"
+  says err "finished tasks are kept in kept"
+  absent mortal/box.lb8.ugrid
+done
+vanguard mesh -q -p p/box --helpers "a folder" --mesher tetgen --leaf-cells 500 \
+  --write lb8.ugrid --out straight
+exits 0
+same straight/box.lb8.ugrid mortal/box.lb8.ugrid
+
+# Ranks must have the same helpers, also on one node.
+if mpirun -n 2 true >/dev/null 2>&1; then
+  mpirun -n 1 "$program" mesh -q -p p/box --write lb8.ugrid --out d : \
+    -n 1 env VANGUARD_HELPERS= "$program" mesh -q -p p/box --write lb8.ugrid \
+    --out d >out 2>err
+  status=$?
+  exits 1
+  says err "uses another vanguard-tetgen (TetGen"
+  absent d/box.lb8.ugrid
+fi
+
 # The helper by itself: it introduces itself, answers through pipes and ends
 # with its input. The job is a tetrahedron with one triangle.
 "$bin/vanguard-tetgen" --version >out
-says out "message format 1"
+says out "message format 2"
 "$bin/vanguard-tetgen" </dev/null | head -c 8 >out
 says out VGHELPER
 "$bin/vanguard-tetgen" --what 2>err </dev/null
