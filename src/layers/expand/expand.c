@@ -171,14 +171,22 @@ static void place_columns(void *context, size_t first, size_t end, int worker)
       vg_expand_column(e, p->surface, i, p->point + e->base[i]);
 }
 
+/* After the columns. */
 static void place_middles(void *context, size_t first, size_t end, int worker)
 {
   const struct points *p = context;
+  const struct vg_expand *e = p->e;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    if (vg_pair_is_first(p->e, i))
-      vg_pair_middle(p->e, p->surface, i, p->point[p->e->middle[i]]);
+  for (size_t i = first; i < end; i++) {
+    uint32_t q[4], base[4];
+
+    if (!vg_pair_is_first(e, i)) continue;
+    vg_pair_corners(e, i, q);
+    for (int k = 0; k < 4; k++) base[k] = e->base[q[k]];
+    vg_pair_middle_of((const double(*)[3])p->point, base, vg_pair_levels(e, q),
+                      p->point[e->middle[i]]);
+  }
 }
 
 void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,

@@ -15,7 +15,7 @@
 #define VG_MATCHING_PATH 9
 #define VG_MATCHING_CYCLE 8
 /* Sweeps over all nodes in which paths and cycles are exchanged. */
-#define VG_MATCHING_SWEEPS 4
+#define VG_MATCHING_SWEEPS 2
 
 struct vg_links {
   size_t n;              /* Number of nodes. */

@@ -205,23 +205,31 @@ struct stack {
 };
 #define MIDDLE (4 * (VG_LEVELS_MAX + 1))
 
+void vg_pair_middle_of(const double (*x)[3], const uint32_t base[4],
+                       unsigned low, double middle[3])
+{
+  assert(low > 1);
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+
+    for (int k = 0; k < 4; k++)
+      for (unsigned l = low - 1; l <= low; l++) sum += x[base[k] + l - 1][i];
+    middle[i] = sum / 8;
+  }
+}
+
 static void load(const struct vg_expand *e, const struct vg_mesh *surface,
                  const uint32_t q[4], struct stack *s)
 {
   double d[VG_LEVELS_MAX + 1];
-  const unsigned low = vg_pair_levels(e, q);
+  uint32_t base[4];
 
-  for (size_t k = 0; k < 4; k++)
-    vg_column_points(e->columns, surface, q[k], d,
-                     s->x + k * (VG_LEVELS_MAX + 1));
-  for (int i = 0; i < 3; i++) {
-    double sum = 0;
-
-    for (size_t k = 0; k < 4; k++)
-      for (unsigned l = low - 1; l <= low; l++)
-        sum += s->x[k * (VG_LEVELS_MAX + 1) + l][i];
-    s->x[MIDDLE][i] = sum / 8;
+  for (uint32_t k = 0; k < 4; k++) {
+    base[k] = k * (VG_LEVELS_MAX + 1) + 1;
+    vg_column_points(e->columns, surface, q[k], d, s->x + base[k] - 1);
   }
+  vg_pair_middle_of((const double(*)[3])s->x, base, vg_pair_levels(e, q),
+                    s->x[MIDDLE]);
 }
 
 void vg_pair_middle(const struct vg_expand *e, const struct vg_mesh *surface,

@@ -65,6 +65,11 @@ unsigned vg_pair_levels(const struct vg_expand *e, const uint32_t q[4]);
 void vg_pair_middle(const struct vg_expand *e, const struct vg_mesh *surface,
                     size_t face, double x[3]);
 
+/** The same from the points of its columns, whose points at level 1 are base.
+ * low: number of levels of the lowest column. */
+void vg_pair_middle_of(const double (*x)[3], const uint32_t base[4],
+                       unsigned low, double middle[3]);
+
 /* How a pair begins at the wall: its columns together, or first those of the
  * first root of vg_pair_corners, or those of the second; or on a quadrilateral
  * of the wall. */

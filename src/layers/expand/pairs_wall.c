@@ -27,12 +27,19 @@
 #define WEIGHT_FLAT 100
 #define WEIGHT_LONGEST 100
 
+/* Cells are tested for pairs of the matching only, a third of all edges. Where
+ * they are bad, the matching is repeated without this pair, this often. */
+#define ROUNDS 12
+
+enum { UNTESTED, GOOD, BAD };
+
 struct walls {
   struct vg_expand *e;
   const struct vg_mesh *surface;
   size_t n; /* Number of wall faces, which come first. */
   struct vg_edges edges;
   uint16_t *weight; /* [edges.n] 0: no pair. */
+  uint8_t *state;   /* [edges.n] of the test. */
 };
 
 static const double *foot_of(const struct walls *w, uint32_t column)
@@ -136,8 +143,7 @@ static uint16_t weight_of(const struct walls *w, const size_t pair[2])
   if (!(flat >= WARP_LEAST)) return 0;
   for (int i = 0; i < 3; i++) normal[i] = n[0][i] + n[1][i];
   cosine = widest(x, normal);
-  if (!(cosine <= COSINE_MOST) || !vg_pair_is_good(w->e, w->surface, pair))
-    return 0;
+  if (!(cosine <= COSINE_MOST)) return 0;
   flat = (flat - WARP_LEAST) / (1 - WARP_LEAST);
   return (uint16_t)(1 + WEIGHT_ANGLE * (1 - cosine) + WEIGHT_FLAT * flat +
                     WEIGHT_LONGEST * share_of_common(x));
@@ -157,6 +163,40 @@ static void weigh(void *context, size_t first, size_t end, int worker)
     for (int k = 0; k < 2; k++) pair[k] = half[k] / 3;
     w->weight[i] = weight_of(w, pair);
   }
+}
+
+/* Tests the pairs of the matching that were not tested before. */
+static void test_pairs(void *context, size_t first, size_t end, int worker)
+{
+  const struct walls *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const uint32_t *half = vg_edges_at(&w->edges, i);
+    size_t pair[2];
+
+    if (!w->weight[i] || w->state[i] != UNTESTED) continue;
+    for (int k = 0; k < 2; k++) pair[k] = half[k] / 3;
+    if (w->e->partner[pair[0]] == pair[1])
+      w->state[i] = vg_pair_is_good(w->e, w->surface, pair) ? GOOD : BAD;
+  }
+}
+
+/* Removes the links of pairs with bad cells, and these pairs. Returns their
+ * number. */
+static size_t drop_bad(const struct walls *w)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < w->edges.n; i++) {
+    const uint32_t *half = vg_edges_at(&w->edges, i);
+
+    if (w->state[i] != BAD || !w->weight[i]) continue;
+    w->weight[i] = 0;
+    for (int k = 0; k < 2; k++) w->e->partner[half[k] / 3] = VG_NO_INDEX;
+    n++;
+  }
+  return n;
 }
 
 static void link_faces(const struct walls *w, struct vg_links *l)
@@ -183,12 +223,14 @@ static vg_status reserve(struct walls *w, struct vg_links *l,
   l->to = vg_alloc(w->n, sizeof *l->to);
   l->weight = vg_alloc(w->n, sizeof *l->weight);
   w->weight = vg_alloc(w->edges.n, sizeof *w->weight);
+  w->state = vg_calloc(w->edges.n, 1);
   if (!e->partner) {
     e->partner = vg_alloc(n, sizeof *e->partner);
     e->middle = vg_alloc(n, sizeof *e->middle);
     if (e->partner) memset(e->partner, 0xff, n * sizeof *e->partner);
   }
-  if (l->to && l->weight && w->weight && e->partner && e->middle) return VG_OK;
+  if (l->to && l->weight && w->weight && w->state && e->partner && e->middle)
+    return VG_OK;
   return vg_fail_memory(err, "the pairs of wall faces");
 }
 
@@ -224,12 +266,17 @@ vg_status vg_pairs_find_wall(struct vg_expand *e, const struct vg_mesh *surface,
                         (const uint32_t(*)[3])c->face, NULL, 0, err));
   VG_TRY(reserve(&w, &l, err));
   vg_parallel_for(e->threads, w.edges.n, EDGE_GRAIN, weigh, &w);
-  link_faces(&w, &l);
-  VG_TRY(vg_links_match(&l, e->partner, err));
+  for (int i = 0, again = 1; i < ROUNDS && again; i++) {
+    link_faces(&w, &l);
+    VG_TRY(vg_links_match(&l, e->partner, err));
+    vg_parallel_for(e->threads, w.edges.n, EDGE_GRAIN, test_pairs, &w);
+    again = drop_bad(&w) > 0;
+  }
   measure(&w);
 done:
   vg_edges_release(&w.edges);
   free(w.weight);
+  free(w.state);
   free(l.to);
   free(l.weight);
   return st;
