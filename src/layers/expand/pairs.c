@@ -14,6 +14,10 @@
 
 #define PAIR_GRAIN 16
 
+/* L30: least square of the cosines between the faces of a cell in a pair of
+ * wall faces and the lines from its centre to theirs: 87 degrees. */
+#define CENTRED 0.0025
+
 /* An edge between columns of two roots, of a virtual face that has one column
  * of one root (`single`) and two of the other. */
 struct edge {
@@ -268,6 +272,20 @@ static int all_positive(const struct stack *s, const struct cells *c,
   return 1;
 }
 
+/* Whether no centre of a cell is behind or close to one of its faces, as in
+ * warped hexahedra that are thin. */
+static int all_centred(const struct stack *s, const struct cells *c,
+                       const struct vg_cell_sink *end)
+{
+  const double(*x)[3] = (const double(*)[3])s->x;
+
+  for (size_t i = 0; c->pyr + i < end->pyr; i++)
+    if (!(vg_cell_cosine2(x, 1, c->pyr[i]) >= CENTRED)) return 0;
+  for (size_t i = 0; c->hex + i < end->hex; i++)
+    if (!(vg_cell_cosine2(x, 3, c->hex[i]) >= CENTRED)) return 0;
+  return 1;
+}
+
 /* All cells up to the level where the lowest column ends, with each of the ways
  * to begin at the wall. Those above are the cells of single faces, which were
  * tested when the layers grew. */
@@ -300,7 +318,9 @@ int vg_pair_is_good(const struct vg_expand *e, const struct vg_mesh *surface,
     struct vg_cell_sink sink = { c.tet, c.pyr, c.pri, c.hex };
 
     vg_expand_pair(e, pair, q, start[i], foot, base, MIDDLE, &sink);
-    if (!all_positive(&s, &c, &sink)) return 0;
+    if (!all_positive(&s, &c, &sink) ||
+        (on_wall && !all_centred(&s, &c, &sink)))
+      return 0;
   }
   return 1;
 }
