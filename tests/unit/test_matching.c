@@ -111,9 +111,9 @@ static struct most best_of(const struct vg_links *l, size_t from, uint32_t used)
   return best;
 }
 
-/* Graphs in which no path has more links than are searched: as many pairs as
- * possible. */
-static void as_many_pairs_as_possible(void **state)
+/* Graphs in which no path has more links than are searched: no matching has
+ * more pairs. */
+static void most_pairs_possible(void **state)
 {
   uint64_t seed = 7;
   double share = 0, n_graph = 0;
@@ -240,7 +240,7 @@ static void nothing_to_match(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(as_many_pairs_as_possible),
+    cmocka_unit_test(most_pairs_possible),
     cmocka_unit_test(no_path_is_left),
     cmocka_unit_test(triangles_of_a_surface),
     cmocka_unit_test(nothing_to_match),

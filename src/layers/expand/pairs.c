@@ -14,9 +14,12 @@
 
 #define PAIR_GRAIN 16
 
-/* L30: least square of the cosines between the faces of a cell in a pair of
- * wall faces and the lines from its centre to theirs: 87 degrees. */
+/* L30 */
+/* Least square of the cosines between the faces of a cell in a pair of wall
+ * faces and the lines from its centre to theirs: 87 degrees. */
 #define CENTRED 0.0025
+/* The same for a hexahedron above which the thicker ones are not tested. */
+#define WELL_CENTRED 0.25
 
 /* An edge between columns of two roots, of a virtual face that has one column
  * of one root (`single`) and two of the other. */
@@ -281,8 +284,12 @@ static int all_centred(const struct stack *s, const struct cells *c,
 
   for (size_t i = 0; c->pyr + i < end->pyr; i++)
     if (!(vg_cell_cosine2(x, 1, c->pyr[i]) >= CENTRED)) return 0;
-  for (size_t i = 0; c->hex + i < end->hex; i++)
-    if (!(vg_cell_cosine2(x, 3, c->hex[i]) >= CENTRED)) return 0;
+  for (size_t i = 0; c->hex + i < end->hex; i++) {
+    const double least = vg_cell_cosine2(x, 3, c->hex[i]);
+
+    if (!(least >= CENTRED)) return 0;
+    if (least >= WELL_CENTRED) break;
+  }
   return 1;
 }
 
