@@ -39,8 +39,18 @@ static size_t count_flat(const struct vg_mesh *m,
   static const uint8_t pyramid[4][4] = {
     { 0, 3, 4, 2 }, { 0, 4, 1, 2 }, { 0, 3, 1, 2 }, { 3, 4, 1, 2 }
   };
+  static const uint8_t hex[8][4] = { { 0, 1, 3, 4 }, { 1, 2, 0, 5 },
+                                     { 2, 3, 1, 6 }, { 3, 0, 2, 7 },
+                                     { 4, 7, 5, 0 }, { 5, 4, 6, 1 },
+                                     { 6, 5, 7, 2 }, { 7, 6, 4, 3 } };
   size_t n = 0;
 
+  for (size_t i = 0; i < 8 * m->n_hex; i++) {
+    const uint32_t *t = m->hex[i / 8];
+    const uint8_t *c = hex[i % 8];
+
+    n += !(volume6(m, t[c[0]], t[c[1]], t[c[2]], t[c[3]]) > 0);
+  }
   for (size_t i = 0; i < info->n_layer_tet; i++) {
     const uint32_t *t = m->tet[i];
 
@@ -132,9 +142,44 @@ static void join_model(const struct model *m, enum vg_layer_cells cells,
     fail_msg("%s", err.text);
 }
 
-/* Both expansions of one model; returns the number of their layer cells without
+/* Hexahedra of all models: in fans, and on walls. */
+static size_t n_hexahedra, n_on_walls;
+
+/* Pairs of wall triangles change the layers only, not their side faces or the
+ * number of points on the boundary. Returns the number of layer cells without
  * volume. */
-static size_t n_hexahedra; /* Of all models. */
+static size_t check_hex(const struct model *m, const struct vg_mesh *mixed,
+                        const struct vg_join_info *before)
+{
+  struct vg_mesh hex = VG_MESH_INIT;
+  struct vg_join_info info;
+  struct vg_mesh_report r;
+  uint64_t n;
+  size_t n_flat, n_pair;
+
+  join_model(m, VG_LAYER_HEX, 1, &hex, &info);
+  assert_conforming(&hex, &r);
+  assert_boundary_first(&hex, &info);
+  assert_int_equal(vg_layers_count(&m->surface, &m->layers, VG_LAYER_HEX, 1, &n,
+                                   NULL),
+                   VG_OK);
+  assert_int_equal(n, info.n_layer_tet + info.n_layer_pyr + info.n_layer_pri +
+                        info.n_layer_hex);
+  assert_int_equal(info.n_boundary_point, before->n_boundary_point);
+  n_pair = info.n_layer_point - before->n_layer_point;
+  assert_int_equal(hex.n_quad, mixed->n_quad + n_pair);
+  assert_int_equal(hex.n_tri + 2 * n_pair, mixed->n_tri);
+  assert_int_equal(hex.n_tet - info.n_layer_tet,
+                   mixed->n_tet - before->n_layer_tet);
+  assert_true(n_pair ? info.wall_quads > 0 : info.wall_quads == 0);
+  n_flat = count_flat(&hex, &info);
+  n_on_walls += hex.n_hex - mixed->n_hex;
+  vg_mesh_release(&hex);
+  return n_flat;
+}
+
+/* All expansions of one model; returns the number of their layer cells without
+ * volume. */
 
 static size_t check_model(const struct model *m)
 {
@@ -172,7 +217,8 @@ static size_t check_model(const struct model *m)
   if (tets.n_point == mixed.n_point)
     assert_memory_equal(tets.point, mixed.point,
                         tets.n_point * sizeof *tets.point);
-  n_flat = count_flat(&tets, &a) + count_flat(&mixed, &b);
+  n_flat = count_flat(&tets, &a) + count_flat(&mixed, &b) +
+           check_hex(m, &mixed, &b);
   n_hexahedra += mixed.n_hex;
   vg_mesh_release(&tets);
   vg_mesh_release(&mixed);
@@ -340,7 +386,18 @@ static void a_ridge_in_all_configurations(void **state)
   assert_int_equal(n_flat, 0);
 }
 
-static void check_roofs(int n_each, int n_model)
+/* Thicker and more layers, on which pairs of wall triangles have a last level
+ * of good shape. */
+static void thicken(struct model *m, double delta1, unsigned more)
+{
+  for (size_t i = 0; i < m->layers.columns.n_column; i++)
+    m->layers.columns.column[i].n += (uint16_t)more;
+  m->layers.columns.law[0].delta1 = delta1;
+  clear_front(m);
+  model_front(m);
+}
+
+static void check_roofs(int n_each, double delta1, unsigned more, int n_model)
 {
   uint64_t seed = 1;
   int n_done = 0;
@@ -350,12 +407,12 @@ static void check_roofs(int n_each, int n_model)
     size_t n_flat;
 
     model_roof(&m, 2 + 2 * (i % 4), n_each, i % 7, &seed);
-    model_front(&m);
+    thicken(&m, delta1, more);
     if (model_front_is_manifold(&m)) {
       model_field(&m);
       n_flat = check_model(&m);
-      if (i % 7 == 0) check_nothing_grown(&m);
-      if (i % 7 == 1) check_wall_cells(&m); /* one level at most */
+      if (i % 7 == 0 && !more) check_nothing_grown(&m);
+      if (i % 7 == 1 && !more) check_wall_cells(&m); /* one level at most */
       /* different heights within a fan may twist its cells until they are
        * flat */
       if (n_each) assert_int_equal(n_flat, 0);
@@ -369,13 +426,16 @@ static void check_roofs(int n_each, int n_model)
 static void roofs_with_any_fans(void **state)
 {
   (void)state;
-  check_roofs(0, 150);
+  check_roofs(0, 0.001, 0, 150);
+  n_on_walls = 0;
+  check_roofs(0, 0.02, 3, 100);
+  assert_true(n_on_walls > 1000);
 }
 
 static void roofs_with_equal_fans(void **state)
 {
   (void)state;
-  for (int n = 1; n <= ROOF_FAN; n++) check_roofs(n, 40);
+  for (int n = 1; n <= ROOF_FAN; n++) check_roofs(n, 0.001, 0, 40);
 }
 
 static void fill_model(struct model *m)
@@ -396,33 +456,39 @@ static void fill_model(struct model *m)
 static void a_sphere_in_a_box(void **state)
 {
   struct model m;
-  struct vg_mesh mesh[2] = { VG_MESH_INIT, VG_MESH_INIT };
-  struct vg_join_info info[2];
-  struct vg_mesh_report r[2];
+  struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
+  struct vg_join_info info[3];
+  struct vg_mesh_report r[3];
   uint64_t seed = 5;
 
   (void)state;
   model_sphere(&m, 6, 6, &seed);
+  thicken(&m, 0.03, 0);
   fill_model(&m);
-  for (int i = 0; i < 2; i++) {
-    join_model(&m, i ? VG_LAYER_MIXED : VG_LAYER_TETS, 1, &mesh[i], &info[i]);
+  for (int i = 0; i < 3; i++) {
+    join_model(&m, (enum vg_layer_cells)i, 1, &mesh[i], &info[i]);
     assert_conforming(&mesh[i], &r[i]);
     assert_true(r[i].is_valid);
     assert_int_equal(r[i].n_component, 1);
     assert_int_equal(count_flat(&mesh[i], &info[i]), 0);
+    assert_int_equal(info[i].n_boundary_point, m.surface.n_point);
+    assert_int_equal(mesh[i].n_patch, m.surface.n_patch);
+    if (i == VG_LAYER_HEX) continue;
     /* the boundary is the surface, in its order */
     assert_int_equal(mesh[i].n_tri, m.surface.n_tri);
     assert_int_equal(mesh[i].n_quad, 0);
-    assert_int_equal(info[i].n_boundary_point, m.surface.n_point);
     assert_memory_equal(mesh[i].tri, m.surface.tri,
                         m.surface.n_tri * sizeof *mesh[i].tri);
     assert_memory_equal(mesh[i].tri_patch, m.surface.tri_patch,
                         m.surface.n_tri * sizeof *mesh[i].tri_patch);
-    assert_int_equal(mesh[i].n_patch, m.surface.n_patch);
   }
+  assert_true(mesh[2].n_hex && mesh[2].n_quad);
+  assert_int_equal(mesh[2].n_tri + 2 * mesh[2].n_quad, m.surface.n_tri);
+  /* quadrilaterals are not plane, but the mean of their triangulations */
+  assert_true(fabs(r[0].volume - r[2].volume) < 1e-2 * r[0].volume);
   assert_true(fabs(r[0].volume - r[1].volume) < 1e-12 * r[0].volume);
   assert_true(info[1].n_layer_pri > info[1].n_layer_pyr);
-  for (int i = 0; i < 2; i++) vg_mesh_release(&mesh[i]);
+  for (int i = 0; i < 3; i++) vg_mesh_release(&mesh[i]);
   model_release(&m);
 }
 
@@ -512,27 +578,33 @@ static void any_number_of_threads(void **state)
 
   (void)state;
   model_sphere(&m, 40, 6, &seed);
+  thicken(&m, 0.02, 2);
   assert_true(m.layers.columns.n_face > 6000);
   assert_int_equal(vg_mesh_copy(&m.field,
                                 FRONT_MESH(&m.layers.front, &m.surface), NULL),
                    VG_OK);
-  for (int cells = 0; cells < 2; cells++) {
+  for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_HEX; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
     struct vg_join_info info;
 
     for (int i = 0; i < 3; i++) {
-      join_model(&m, cells ? VG_LAYER_MIXED : VG_LAYER_TETS, i + 1, &mesh[i],
-                 &info);
+      join_model(&m, (enum vg_layer_cells)cells, i + 1, &mesh[i], &info);
       assert_int_equal(mesh[i].n_tet, mesh[0].n_tet);
       assert_int_equal(mesh[i].n_pyr, mesh[0].n_pyr);
       assert_int_equal(mesh[i].n_pri, mesh[0].n_pri);
       assert_int_equal(mesh[i].n_point, mesh[0].n_point);
+      assert_int_equal(mesh[i].n_hex, mesh[0].n_hex);
+      assert_int_equal(mesh[i].n_quad, mesh[0].n_quad);
+      same_array(mesh[0].hex, mesh[i].hex, mesh[0].n_hex, sizeof *mesh->hex);
+      same_array(mesh[0].quad, mesh[i].quad, mesh[0].n_quad,
+                 sizeof *mesh->quad);
       same_array(mesh[0].tet, mesh[i].tet, mesh[0].n_tet, sizeof *mesh->tet);
       same_array(mesh[0].pyr, mesh[i].pyr, mesh[0].n_pyr, sizeof *mesh->pyr);
       same_array(mesh[0].pri, mesh[i].pri, mesh[0].n_pri, sizeof *mesh->pri);
       same_array(mesh[0].point, mesh[i].point, mesh[0].n_point,
                  sizeof *mesh->point);
     }
+    assert_true(cells != VG_LAYER_HEX || mesh[0].n_hex > 1000);
     for (int i = 0; i < 3; i++) vg_mesh_release(&mesh[i]);
   }
   model_release(&m);

@@ -502,10 +502,10 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
 /* On 1 to `most` ranks; returns the number of slices with all tetrahedra. */
 static size_t check_model(const struct model *m, int most)
 {
-  size_t n_slice[2] = { 0, 0 };
+  size_t n_slice[3] = { 0, 0, 0 };
 
-  for (int i = 0; i < 2; i++) {
-    enum vg_layer_cells cells = i ? VG_LAYER_MIXED : VG_LAYER_TETS;
+  for (int i = 0; i < 3; i++) {
+    const enum vg_layer_cells cells = (enum vg_layer_cells)i;
     struct vg_mesh whole = VG_MESH_INIT;
     struct vg_join_info info;
 
@@ -514,7 +514,7 @@ static size_t check_model(const struct model *m, int most)
                      VG_OK);
     for (int size = 1; size <= most; size++)
       n_slice[i] = check_split(m, &whole, &info, cells, (size_t)(2 * size - 1),
-                               size % 2, size, 1 + size % 3, i);
+                               size % 2, size, 1 + size % 3, i > 0);
     check_blocks(m, &whole, &info, cells);
     vg_mesh_release(&whole);
   }

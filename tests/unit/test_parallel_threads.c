@@ -127,7 +127,7 @@ static void layers_are_joined(void **state)
   assert_int_equal(vg_mesh_copy(&m.field,
                                 FRONT_MESH(&m.layers.front, &m.surface), NULL),
                    VG_OK);
-  for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_MIXED; cells++) {
+  for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_HEX; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
 
     for (int i = 0; i < 3; i++) {
@@ -138,6 +138,8 @@ static void layers_are_joined(void **state)
       assert_int_equal(mesh[i].n_tet, mesh[0].n_tet);
       assert_int_equal(mesh[i].n_pri, mesh[0].n_pri);
       assert_int_equal(mesh[i].n_pyr, mesh[0].n_pyr);
+      assert_int_equal(mesh[i].n_hex, mesh[0].n_hex);
+      same_bytes(mesh[0].hex, mesh[i].hex, mesh[0].n_hex, 32);
       same_bytes(mesh[0].point, mesh[i].point, mesh[0].n_point, 24);
       same_bytes(mesh[0].tet, mesh[i].tet, mesh[0].n_tet, 16);
       same_bytes(mesh[0].pri, mesh[i].pri, mesh[0].n_pri, 24);

@@ -126,7 +126,7 @@ static void layers_are_sound(const struct model *m, const struct vg_column *old)
 
 static void whole_mesh_is_valid(const struct model *m)
 {
-  for (int cells = 0; cells < 2; cells++) {
+  for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_HEX; cells++) {
     struct vg_mesh all = VG_MESH_INIT;
     struct vg_join_info info;
     struct vg_mesh_report q;

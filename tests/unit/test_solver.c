@@ -35,6 +35,13 @@ static void make(struct made *m, enum vg_layer_cells cells, double growth)
 
   memset(m, 0, sizeof *m);
   model_sphere(&m->model, 6, 6, &seed);
+  if (cells == VG_LAYER_HEX) { /* Thick enough for pairs of wall triangles. */
+    m->model.layers.columns.law[0].delta1 = 0.03;
+    for (size_t i = 0; i < m->model.layers.columns.n_column; i++)
+      m->model.layers.columns.column[i].n += 2;
+    vg_front_release(&m->model.layers.front);
+    model_front(&m->model);
+  }
   sizing = shape_sizing(FRONT_MESH(&m->model.layers.front, &m->model.surface),
                         growth, 0);
   assert_int_equal(fill_mesh(FRONT_MESH(&m->model.layers.front,
@@ -46,7 +53,7 @@ static void make(struct made *m, enum vg_layer_cells cells, double growth)
                                   &m->model.field, cells, 1, &m->mesh, &m->info,
                                   NULL),
                    VG_OK);
-  m->n_cell = m->mesh.n_tet + m->mesh.n_pyr + m->mesh.n_pri;
+  m->n_cell = m->mesh.n_tet + m->mesh.n_pyr + m->mesh.n_pri + m->mesh.n_hex;
   m->part = vg_alloc(m->n_cell, sizeof *m->part);
 }
 
@@ -205,6 +212,56 @@ static void no_stack_is_cut(void **state)
     assert_true(r.most_near <= 6 && r.mean_near <= (double)r.most_near);
     release(&m);
   }
+}
+
+/* Whether two cells have n common nodes. */
+static int touch(const uint32_t *a, size_t n_a, const uint32_t *b, size_t n_b,
+                 size_t n)
+{
+  size_t common = 0;
+
+  for (size_t i = 0; i < n_a * n_b; i++) common += a[i / n_b] == b[i % n_b];
+  return common == n;
+}
+
+/* Hexahedra that share their lower and upper face, and the pyramids and
+ * tetrahedra around the point in the middle of the last level. */
+static void no_stack_of_hexahedra_is_cut(void **state)
+{
+  struct vg_solver_options o = parts(9);
+  struct vg_solver_report r;
+  struct made m;
+  size_t pyr, hex, n_met = 0, n_level = 0;
+
+  (void)state;
+  needs_metis();
+  make(&m, VG_LAYER_HEX, 1.2);
+  pyr = m.mesh.n_tet;
+  hex = pyr + m.mesh.n_pyr + m.mesh.n_pri;
+  tell_apart(&m, &o, &r);
+  assert_false(r.has_loose);
+  for (size_t i = 0; i < m.mesh.n_hex; i++)
+    for (size_t k = 0; k < m.mesh.n_hex; k++) {
+      if (!touch(m.mesh.hex[i] + 4, 4, m.mesh.hex[k], 4, 4)) continue;
+      assert_int_equal(m.part[hex + i], m.part[hex + k]);
+      n_met++;
+    }
+  for (size_t i = 0; i < m.mesh.n_hex; i++)
+    for (size_t k = 0; k < m.mesh.n_pyr; k++) {
+      const uint32_t middle = m.mesh.pyr[k][2];
+
+      if (!touch(m.mesh.hex[i] + 4, 4, m.mesh.pyr[k], 5, 4)) continue;
+      for (size_t j = 0; j < m.mesh.n_pyr; j++)
+        if (m.mesh.pyr[j][2] == middle)
+          assert_int_equal(m.part[hex + i], m.part[pyr + j]);
+      for (size_t j = 0; j < m.info.n_layer_tet; j++)
+        if (touch(&middle, 1, m.mesh.tet[j], 4, 1))
+          assert_int_equal(m.part[hex + i], m.part[j]);
+      n_level++;
+    }
+  assert_true(n_met > 10 && n_level > 10);
+  check_balance(&m, 9, &r);
+  release(&m);
 }
 
 /* Clusters give ragged borders, which moving single cells straightens. */
@@ -515,6 +572,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(no_stack_is_cut),
+    cmocka_unit_test(no_stack_of_hexahedra_is_cut),
     cmocka_unit_test(clusters_keep_stacks_and_balance),
     cmocka_unit_test(weights_shift_cells),
     cmocka_unit_test(a_wrong_number_of_layers_is_noticed),

@@ -15,7 +15,7 @@ import os
 import sys
 import tempfile
 
-KINDS = {10: "tetrahedra", 14: "pyramids", 13: "prisms"}
+KINDS = {10: "tetrahedra", 14: "pyramids", 13: "prisms", 12: "hexahedra"}
 
 
 def vtk_cells(grid):
@@ -126,7 +126,7 @@ def of_meshio(path):
     for tag, n in count.items():
         print("patch", name.get(tag, f"tag_{tag}"), n)
     solid = [(c.type, c.data.astype("int64")) for c in mesh.cells
-             if c.type in ("tetra", "pyramid", "wedge")]
+             if c.type in ("tetra", "pyramid", "wedge", "hexahedron")]
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "back.vtu")
         meshio.write_points_cells(out, mesh.points, solid)
@@ -146,7 +146,7 @@ def of_petsc(path):
     for c in range(first, end):
         kind = int(dm.getCellType(c))
         number[kind] = number.get(kind, 0) + 1
-    types = {6: "tetrahedra", 8: "prisms", 11: "pyramids"}
+    types = {6: "tetrahedra", 7: "hexahedra", 8: "prisms", 11: "pyramids"}
     for kind, n in number.items():
         print(types.get(kind, f"kind_{kind}"), n)
     volume = sum(dm.computeCellGeometryFVM(c)[0] for c in range(first, end))
@@ -167,7 +167,8 @@ def of_netgen(path):
     for e in mesh.Elements3D():
         n = len(e.vertices)
         number[n] = number.get(n, 0) + 1
-    for n, kind in ((4, "tetrahedra"), (5, "pyramids"), (6, "prisms")):
+    for n, kind in ((4, "tetrahedra"), (5, "pyramids"), (6, "prisms"),
+                    (8, "hexahedra")):
         if n in number:
             print(kind, number[n])
     for e in mesh.Elements2D():

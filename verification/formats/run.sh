@@ -6,7 +6,7 @@
 #
 # usage: verification/formats/run.sh [--build DIR | --vanguard PROGRAM]
 #            [--quick] [--data DIR] [--work DIR]
-#   --quick  only the demo wing-half with few layers, tetrahedra and mixed;
+#   --quick  only the demo wing-half with few layers, all kinds of cells;
 #            otherwise with many layers, and DLR-F6 (from --data) with layers
 #   --work   scratch folder, kept (default: a temporary one, removed)
 # Clients and Debian packages: gmsh (gmsh) for .msh, .mesh; cgnscheck
@@ -61,6 +61,7 @@ then
   set -u
 fi
 readers=$here/readers.py
+kinds='tetrahedra|pyramids|prisms|hexahedra'
 # The first Python that has the library of a client of readers.py.
 python_for() {
   local p
@@ -80,7 +81,7 @@ export FF_LOADPATH=${FF_LOADPATH:-/usr/lib/freefem++}
 # of `vanguard check --json`
 of_check() {
   awk '{ gsub("[,\"]", "") }
-       $1 ~ /^(tetrahedra|pyramids|prisms):$/ && $2 > 0 {
+       $1 ~ /^(tetrahedra|pyramids|prisms|hexahedra):$/ && $2 > 0 {
          print substr($1, 1, length($1) - 1), $2 }
        $1 == "id:" { id = $2 }
        $1 == "name:" { name = NF > 1 ? $2 : "patch_" id }
@@ -96,8 +97,8 @@ of_gmsh() {
        section == "$Elements" && NF > 4 {
          if ($2 == 2 || $2 == 3) face[$4]++
          else cell[$2]++ }
-       END { split("4 tetrahedra 7 pyramids 6 prisms", k)
-         for (i = 1; i < 6; i += 2) if (cell[k[i]]) print k[i + 1], cell[k[i]]
+       END { split("4 tetrahedra 7 pyramids 6 prisms 5 hexahedra", k)
+         for (i = 1; i < 8; i += 2) if (cell[k[i]]) print k[i + 1], cell[k[i]]
          for (p in face) print "patch", name[p], face[p] }' "$1"
   awk '/Mesh volume/ { printf "volume %.5g\n", $NF }' "$2"
 }
@@ -110,7 +111,8 @@ of_cgnscheck() {
          n = r[2] - r[1] + 1
          if (type == "TETRA_4") print "tetrahedra", n
          if (type == "PYRA_5") print "pyramids", n
-         if (type == "PENTA_6") print "prisms", n }
+         if (type == "PENTA_6") print "prisms", n
+         if (type == "HEXA_8") print "hexahedra", n }
        /checking BC / { split($0, q, "\""); bc = q[2] }
        bc && / Range=/ && !/Element/ { gsub("[^0-9]+", " "); split($0, r, " ")
          print "patch", bc, r[2] - r[1] + 1; bc = "" }'
@@ -118,9 +120,9 @@ of_cgnscheck() {
 
 # of cs_preprocess
 of_saturne() {
-  awk '/Number of elements +(tetra4|pyramid5|penta6)/ {
+  awk '/Number of elements +(tetra4|pyramid5|penta6|hexa8)/ {
          sub("tetra4", "tetrahedra"); sub("pyramid5", "pyramids")
-         sub("penta6", "prisms"); print $4, $NF }
+         sub("penta6", "prisms"); sub("hexa8", "hexahedra"); print $4, $NF }
        /^ *Group "/ { split($0, q, "\""); if (q[2] !~ /^[0-9]+$/) g = q[2] }
        /^ *Family [0-9]+$/ { g = "" }
        /Number of boundary faces :/ && !/Main/ && g { print "patch", g, $NF }' |
@@ -129,7 +131,7 @@ of_saturne() {
 
 # of checkMesh
 of_foam() {
-  awk '/^ *(tetrahedra|pyramids|prisms):/ && $2 > 0 {
+  awk '/^ *(tetrahedra|pyramids|prisms|hexahedra):/ && $2 > 0 {
          print substr($1, 1, length($1) - 1), $2 }
        /Patch +Faces +Points/ { table = 1; next }
        table && NF > 3 { print "patch", $1, $2; next }
@@ -232,7 +234,14 @@ ask_foam() {
   of_foam < "$d/log.case" | compare checkMesh volume
   command -v gmsh >/dev/null || return
   gmsh "$stem.msh" -save -format msh41 -o "$d/text.msh" > /dev/null 2>&1
-  foam_case gmshToFoam gmshToFoam "$d/text.msh"
+  if [ "$1" = hex ]; then   # it mistakes thin, warped hexahedra for inverted
+    mkdir -p "$d/foam/constant"
+    cp -r "$stem.openfoam/system" "$d/foam/"
+    gmshToFoam -case "$d/foam" "$d/text.msh" > "$d/log.gmshToFoam" 2>&1
+    refuses gmshToFoam sh -c "! grep -q '^Inverting' '$d/log.gmshToFoam'"
+    rm -rf "$d/foam"
+  else foam_case gmshToFoam gmshToFoam "$d/text.msh"
+  fi
   mkdir -p "$d/foam/constant"
   cp -r "$stem.openfoam/system" "$d/foam/"
   refuses "gmshToFoam.binary" gmshToFoam -case "$d/foam" "$stem.msh"
@@ -277,7 +286,7 @@ library() {
   p=$(python_for "$1") || { echo "  $1 is not installed: omitted"; return; }
   clients=$((clients + 1))
   "$p" "$readers" "$1" "$stem.$2" 2> "$d/log.$1" |
-    grep -E '^(tetrahedra|pyramids|prisms|kind|patch|volume|negative|reals) ' |
+    grep -E "^($kinds|kind|patch|volume|negative|reals) " |
     compare "$1.$2" "${3:-}"
 }
 
@@ -342,7 +351,7 @@ check_case() {
   done
   ask_gmsh "$cells"
   ask_cgns
-  ask_foam
+  ask_foam "$cells"
   ask_saturne
   ask_freefem "$cells"
   ask_libraries
@@ -353,7 +362,7 @@ check_case() {
   exit 1
 first=()
 [ $quick = 0 ] || first=(--first 0.004)
-for cells in tets mixed; do
+for cells in tets mixed hex; do
   check_case wing "$work/demo/wing-half" $cells "${first[@]}"
 done
 # patches without conditions and names
@@ -364,7 +373,7 @@ check_case bare "$work/bare/wing-half.lb8.ugrid" mixed --layers yes \
 f6=$data/transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz
 if [ $quick = 0 ] && [ -e "$f6" ]; then
   xz -dc "$f6" > "$work/f6.lb8.ugrid"
-  for cells in tets mixed; do
+  for cells in tets mixed hex; do
     check_case dlr_f6 "$work/f6.lb8.ugrid" $cells --layers yes --walls 1-123 \
       --reynolds 3e6 --reference-length 141.2 --y-plus 1
   done

@@ -17,7 +17,7 @@
 #   --work       scratch folder, logs and reports are kept (default: a
 #                temporary one, removed)
 #   --out        write the table to FILE too
-#   --cells      kinds of cells (default both, one after the other)
+#   --cells      kinds of cells, one after the other; also hex (README.md)
 #   --threads    threads of every run (default: the cores); the report of a run
 #                with another number is a failure
 #   --options    more options for `vanguard mesh`, e.g. "--fan-angle 60"
@@ -130,7 +130,7 @@ miss() { missed="${missed:+$missed, }$*"; }
 judge_mesh() {   # judge_mesh FOLDER MESH KIND
   local program=$checker
   "$vanguard" check -q "$2" > "$1/check" 2>&1 || bad "vanguard check"
-  [ "$3" != mixed ] || program=$checker_mixed
+  [ "$3" = tets ] || program=$checker_mixed
   [ -n "$program" ] || return
   "$program" -q "$2" > "$1/meshcheck" 2>&1 ||
     bad "judge: $(grep -a FAIL "$1/meshcheck" | head -1)"
@@ -150,7 +150,7 @@ field_bars() {
 
 # Compare a mesh with the requirements. bars REPORT MEASURED KIND FULL
 bars() {
-  local full any first layers prisms
+  local full any first layers prisms quads dense
   full=$(json "$1" all percent_full)
   any=$(json "$1" all percent_any)
   first=$(json "$1" all first_error_percent)
@@ -159,16 +159,24 @@ bars() {
   holds '<=' "$first" 1 || miss "first height off by $(printf %.2f "$first") %"
   field_bars "$1"
   prisms=-
-  if [ "$3" = mixed ]; then
+  if [ "$3" != tets ]; then
     layers=$(awk -v t="$(json "$1" layers tetrahedra)" \
       -v p="$(json "$1" layers pyramids)" -v q="$(json "$1" layers prisms)" \
-      'BEGIN { print t + p + q, 100 * q / (t + p + q) }')
+      -v h="$(json "$1" layers hexahedra)" \
+      'BEGIN { print t + p + q + h, 100 * (q + h) / (t + p + q + h) }')
     prisms=${layers#* }
-    holds '>=' "$prisms" 90 || miss "prisms $prisms < 90"
-    [ "$(value "$2" first_off_1_percent)" = 0 ] ||
-      miss "first height in the file off at $(value "$2" \
-        first_off_1_percent) points"
-    first=$(value "$2" first_error_percent)
+    if [ "$3" = mixed ]; then
+      holds '>=' "$prisms" 90 || miss "prisms $prisms < 90"
+      [ "$(value "$2" first_off_1_percent)" = 0 ] ||
+        miss "first height in the file off at $(value "$2" \
+          first_off_1_percent) points"
+      first=$(value "$2" first_error_percent)
+    else
+      quads=$(json "$1" layers percent_wall_quadrilaterals)
+      dense=$(json "$1" layers cells_per_point)
+      holds '>=' "$quads" 80 || miss "wall quadrilaterals $quads % < 80"
+      holds '<=' "$dense" 1.4 || miss "cells per point $dense > 1.4"
+    fi
   fi
   row=$(printf '%d | %d | %.1f | %.2f | %.2f | %.4f | %.6s | %s' \
     "$(json "$1" layers wall_points)" "$(json "$1" mesh cells)" \
@@ -326,7 +334,7 @@ prepare_checker
 failed=0 done=0
 [ -z "$data" ] || box_case
 say << END
-| case | cells | wall points | all cells | mean levels | full % | any % | first height off, % | % prisms | worst dihedral outside | s on $threads thread(s) | result | bars |
+| case | cells | wall points | all cells | mean levels | full % | any % | first height off, % | % prisms and hexahedra | worst dihedral outside | s on $threads thread(s) | result | bars |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|
 END
 wing_cases

@@ -120,7 +120,7 @@ settings() {   # settings LENGTH
   may --constant-layers pick 1 2 10 100
   may --surface-swap pick yes no
   may --leaf-cells pick 0 20000 100000
-  may --cells pick tets mixed
+  may --cells pick tets mixed hex
   may --threads pick 1 2
 }
 
@@ -144,7 +144,7 @@ try() {   # try NAME: sets $is_bad to the reason of a failure
   elif [ $status != 0 ]; then is_bad="status $status"
   elif ! "$vanguard" check -q "$mesh" > "$work/check" 2>&1; then
     is_bad="not valid"
-  elif [ -n "$meshcheck" ] && [[ ${options[*]} != *"--cells mixed"* ]] &&
+  elif [ -n "$meshcheck" ] && [[ ${options[*]} != *"--cells "[mh]* ]] &&
        ! "$meshcheck" -q "$mesh" > "$work/check" 2>&1; then
     is_bad="not valid by the other judge"
   fi

@@ -4,14 +4,14 @@
 # solver converge on them?
 #
 # usage: verification/openfoam/run.sh [--build DIR | --vanguard PROGRAM]
-#            [--work DIR] [--cells tets|mixed|both] [--iterations N]
+#            [--work DIR] [--cells tets|mixed|hex|both] [--iterations N]
 #            [--project STEM | --case DIR] [--deck FILE] [--alpha DEGREES]
 #            [--model SpalartAllmaras|kOmegaSST] [--data IGNORED]
 #   --build       folder of a build, with bin/vanguard (default build/release)
 #   --work        scratch folder, kept (default: a temporary one, removed)
 #   --cells       cells of the layers (default both): mixed with y+ 1, checked
 #                 and solved; the same with tets, checked; and tets with a first
-#                 height for wall functions, checked and solved
+#                 height for wall functions, checked and solved. hex: as mixed
 #   --wall-first  that height (default 0.004)
 #   --iterations  iterations of simpleFoam (default 300); 0: checkMesh only
 #   --project     mesh this project (default: the demo wing-half), with the deck
@@ -50,7 +50,7 @@ while [ $# -gt 0 ]; do
 done
 case $cells in
   both) kinds='mixed tets tets-wall' ;;
-  mixed) kinds=mixed ;;
+  mixed|hex) kinds=$cells ;;
   tets) kinds='tets tets-wall' ;;
   *) usage >&2; exit 2 ;;
 esac
@@ -125,9 +125,13 @@ make_mesh() {
 INHERENT='High aspect ratio|small determinant'
 # Checks of quality that only -allGeometry makes.
 QUALITY='interpolation weight|volume ratio|flatness|Concave|small angle'
+# Tetrahedra between the centre of a cell and the triangles of its faces, for
+# particles, in thin hexahedra: their faces are more warped than they are high.
+WARPED='decomposition tets'
 
 check_mesh() {
-  local log=$d/log.checkMesh all=$d/log.checkMesh.all line
+  local log=$d/log.checkMesh all=$d/log.checkMesh.all line quality=$QUALITY
+  [ "$kind" != hex ] || quality="$QUALITY|$WARPED"
   (cd "$d" && timeout $LIMIT_S checkMesh) > "$log" 2>&1 ||
     { bad "checkMesh: exit status $?"; return; }
   (cd "$d" && timeout $LIMIT_S checkMesh -allGeometry -allTopology) \
@@ -146,9 +150,9 @@ check_mesh() {
     fi
     grep -a '^ *\*\*\*' "$log" | grep -aE "$INHERENT" |
       sed "s/^ *\**/  checkMesh${line:+ $line}, thin cells: /"
-    grep -a '^ *\*\*\*' "$log" | grep -aE "$QUALITY" |
+    grep -a '^ *\*\*\*' "$log" | grep -aE "$quality" |
       sed "s/^ *\**/  checkMesh${line:+ $line}, quality: /"
-    grep -a '^ *\*\*\*' "$log" | grep -avE "$INHERENT|$QUALITY" \
+    grep -a '^ *\*\*\*' "$log" | grep -avE "$INHERENT|$quality" \
       > "$log.errors"
     while read -r line; do bad "checkMesh: ${line#\*\*\*}"; done \
       < "$log.errors"

@@ -316,6 +316,19 @@ static void tile(struct page *p, uint64_t n, const char *name)
   tile_end(p, name);
 }
 
+static void wall_quads(struct page *p)
+{
+  const struct vg_join_info *j = &p->h->layers->join;
+
+  tile_begin(p);
+  vg_page_fixed(p, 100 * j->wall_quads, 1);
+  vg_page_markup(p, " %");
+  tile_end(p, "wall area in quadrilaterals");
+  tile_begin(p);
+  vg_page_fixed(p, vg_join_density(j), 2);
+  tile_end(p, "layer cells per point of the layers");
+}
+
 void vg_html_tiles(struct page *p)
 {
   const struct vg_slices *m = &p->h->run->slices;
@@ -337,6 +350,7 @@ void vg_html_tiles(struct page *p)
     vg_page_fixed(p, p->h->layers->all.full, 2);
     vg_page_markup(p, " %");
     tile_end(p, "wall faces with full layers");
+    if (p->h->layers->join.cells == VG_LAYER_HEX) wall_quads(p);
     tile_begin(p);
     vg_page_real(p, p->h->layers->all.first.mean, 4);
     tile_end(p, "mean first height");

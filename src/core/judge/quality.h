@@ -184,6 +184,13 @@ vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m, size_t n_layer,
  * @param node  its points in x */
 int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
 
+/** Least square, with its sign, of the cosines between the area vectors of the
+ * faces of a pyramid, prism or hexahedron and the lines from its centre to
+ * theirs: the square of the orthogonal quality of the cell by itself. If it is
+ * not positive, the centre is behind a face. Arguments as for
+ * vg_cell_positive. */
+double vg_cell_cosine2(const double (*x)[3], int kind, const uint32_t *node);
+
 /** Signed volume of a cell as used by the mesh check: a quadrilateral counts as
  * the mean of its two triangulations. Arguments as for vg_cell_positive. */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *node);

@@ -70,14 +70,14 @@ static inline const uint32_t *cell_of(const struct vg_mesh *m, size_t cell,
 }
 
 /* Corners of face j; returns their number. */
-static int face_corners(const struct vg_mesh *m, int kind, const uint32_t *node,
-                        int j, double x[4][3])
+static int face_corners(const double (*point)[3], int kind,
+                        const uint32_t *node, int j, double x[4][3])
 {
   const struct vg_cell_faces *f = &vg_cell_faces[kind];
   int n = j < f->n_tri ? 3 : 4;
 
   for (int i = 0; i < n; i++)
-    memcpy(x[i], m->point[node[f->node[j][i]]], sizeof x[i]);
+    memcpy(x[i], point[node[f->node[j][i]]], sizeof x[i]);
   return n;
 }
 
@@ -154,11 +154,69 @@ static double inner_determinant(const struct vg_solver_sweep *s, size_t cell)
     int corners;
 
     if (s->border[cell] >> j & 1) continue;
-    corners = face_corners(s->m, kind, node, j, x);
+    corners = face_corners((const double(*)[3])s->m->point, kind, node, j, x);
     vg_face_shape((const double(*)[3])x, corners, &shape);
     memcpy(a[n++], shape.area, sizeof shape.area);
   }
   return determinant_of((const double(*)[3])a, n);
+}
+
+/* Centre of a cell from its faces. Returns three times its volume. */
+static double middle_of(const struct vg_face_shape *shape, int n_face,
+                        double at[3])
+{
+  double mean[3] = { 0, 0, 0 }, sum[3] = { 0, 0, 0 }, total = 0;
+
+  for (int j = 0; j < n_face; j++)
+    for (int k = 0; k < 3; k++) mean[k] += shape[j].centre[k] / n_face;
+  for (int j = 0; j < n_face; j++) {
+    const double *c = shape[j].centre;
+    double d[3], part;
+
+    vg_sub(c, mean, d);
+    part = vg_dot(shape[j].area, d);
+    total += part;
+    for (int k = 0; k < 3; k++) sum[k] += part * (0.75 * c[k] + 0.25 * mean[k]);
+  }
+  for (int k = 0; k < 3; k++) at[k] = total != 0 ? sum[k] / total : mean[k];
+  return total;
+}
+
+/* Least signed square of the cosines between A and f, for a cell with its
+ * centre at `at`. */
+static double least_cosine2(const struct vg_face_shape *shape, int n_face,
+                            const double at[3])
+{
+  double least = 1;
+
+  for (int j = 0; j < n_face; j++) {
+    double f[3], product, size2;
+
+    vg_sub(shape[j].centre, at, f);
+    product = vg_dot(shape[j].area, f);
+    size2 = vg_dot(shape[j].area, shape[j].area) * vg_dot(f, f);
+    product = size2 > 0 ? product * fabs(product) / size2 : -1;
+    if (product < least) least = product;
+  }
+  return least;
+}
+
+double vg_cell_cosine2(const double (*x)[3], int kind, const uint32_t *node)
+{
+  assert(kind > VG_CELL_TET && kind < VG_CELL_KINDS);
+
+  const struct vg_cell_faces *f = &vg_cell_faces[kind];
+  struct vg_face_shape shape[6];
+  double at[3];
+
+  for (int j = 0; j < f->n_face; j++) {
+    double corner[4][3];
+    const int n = face_corners(x, kind, node, j, corner);
+
+    vg_face_shape((const double(*)[3])corner, n, &shape[j]);
+  }
+  middle_of(shape, f->n_face, at);
+  return least_cosine2(shape, f->n_face, at);
 }
 
 /* Centre, volume, determinant and the cosines between A and f. */
@@ -166,7 +224,6 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 {
   struct vg_cell_middle *middle = &s->middle[cell - s->m->n_tet];
   struct vg_face_shape shape[6];
-  double mean[3] = { 0, 0, 0 }, sum[3] = { 0, 0, 0 }, total = 0, least = 1;
   double area[6][3];
   int kind;
   const uint32_t *node = cell_of(s->m, cell, &kind);
@@ -174,36 +231,15 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
 
   for (int j = 0; j < n_face; j++) {
     double x[4][3];
-    int n = face_corners(s->m, kind, node, j, x);
+    int n = face_corners((const double(*)[3])s->m->point, kind, node, j, x);
 
     vg_face_shape((const double(*)[3])x, n, &shape[j]);
     memcpy(area[j], shape[j].area, sizeof area[j]);
-    for (int k = 0; k < 3; k++) mean[k] += shape[j].centre[k] / n_face;
   }
   s->determinant[cell] = (float)determinant_of((const double(*)[3])area,
                                                n_face);
-  for (int j = 0; j < n_face; j++) {
-    const double *c = shape[j].centre;
-    double d[3], part;
-
-    vg_sub(c, mean, d);
-    part = vg_dot(shape[j].area, d); /* three times the volume */
-    total += part;
-    for (int k = 0; k < 3; k++) sum[k] += part * (0.75 * c[k] + 0.25 * mean[k]);
-  }
-  for (int k = 0; k < 3; k++)
-    middle->at[k] = total != 0 ? sum[k] / total : mean[k];
-  middle->volume = (float)(total / 3);
-  for (int j = 0; j < n_face; j++) {
-    double f[3], product, size2;
-
-    vg_sub(shape[j].centre, middle->at, f);
-    product = vg_dot(shape[j].area, f);
-    size2 = vg_dot(shape[j].area, shape[j].area) * vg_dot(f, f);
-    product = size2 > 0 ? product * fabs(product) / size2 : -1;
-    if (product < least) least = product;
-  }
-  s->quality[cell] = (float)least;
+  middle->volume = (float)(middle_of(shape, n_face, middle->at) / 3);
+  s->quality[cell] = (float)least_cosine2(shape, n_face, middle->at);
 }
 
 void vg_solver_measure_mixed(struct vg_solver_sweep *s)
@@ -421,7 +457,7 @@ static void collect_mixed(struct vg_solver_sweep *s, size_t t)
   const uint32_t *n = cell_of(s->m, lo, &kind);
   double x[4][3];
 
-  face_corners(s->m, kind, n, b->face[0][t], x);
+  face_corners((const double(*)[3])s->m->point, kind, n, b->face[0][t], x);
   for (size_t i = 0; i < 2; i++) {
     struct vg_face_end end;
 
@@ -535,7 +571,7 @@ void vg_solver_join_mixed(struct vg_solver_sweep *s, uint32_t lo, uint32_t hi)
   }
   end_of(s, lo, face[0], &end[0]);
   end_of(s, hi, face[1], &end[1]);
-  n = face_corners(s->m, kind, a, face[0], x);
+  n = face_corners((const double(*)[3])s->m->point, kind, a, face[0], x);
   count_volumes(s->f, volume_of(s, lo), volume_of(s, hi));
   measure_one(s->f, number_of(s, lo), end, (const double(*)[3])x, n, &g);
   lower(s, lo, vg_signed_square(g.cosine));
@@ -555,7 +591,7 @@ void vg_solver_bound(struct vg_solver_sweep *s, uint32_t cell,
   j = find_face(kind, of, node, n);
   if (j < 0) return; /* not a valid mesh */
   s->border[cell] |= (uint8_t)(1 << j);
-  n = face_corners(s->m, kind, of, j, x);
+  n = face_corners((const double(*)[3])s->m->point, kind, of, j, x);
   centre_of(s, cell, centre);
   vg_face_shape((const double(*)[3])x, n, &shape);
   skewness = vg_face_border_skewness(centre, (const double(*)[3])x, n, &shape);
@@ -604,7 +640,7 @@ void vg_solver_side(const struct vg_solver_sweep *s, uint32_t cell,
   if (j >= 0) {
     struct vg_face_end end;
 
-    face_corners(s->m, kind, of, j, out->corner);
+    face_corners((const double(*)[3])s->m->point, kind, of, j, out->corner);
     end_of(s, cell, j, &end);
     if (kind == VG_CELL_TET) memcpy(out->corner[3], end.at, sizeof end.at);
   }

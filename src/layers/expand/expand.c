@@ -49,15 +49,16 @@ static vg_status reserve(struct vg_expand *e, struct vg_error *err)
 }
 
 vg_status vg_expand_open(struct vg_expand *e, const struct vg_mesh *surface,
-                         const struct vg_columns *columns, int mixed,
-                         int threads, struct vg_error *err)
+                         const struct vg_columns *columns,
+                         enum vg_layer_cells cells, int threads,
+                         struct vg_error *err)
 {
   vg_status st;
 
   assert(e && columns && threads >= 0);
   memset(e, 0, sizeof *e);
   e->columns = columns;
-  e->mixed = mixed;
+  e->mixed = cells != VG_LAYER_TETS;
   e->threads = threads;
   for (size_t i = 0; i < columns->n_column; i++)
     if (columns->column[i].n > VG_LEVELS_MAX)
@@ -69,7 +70,9 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_mesh *surface,
   st = reserve(e, err);
   if (st >= 0) {
     mark_columns(e);
-    if (mixed) st = vg_pairs_find(e, surface, err);
+    if (e->mixed) st = vg_pairs_find(e, surface, err);
+    if (st >= 0 && cells == VG_LAYER_HEX)
+      st = vg_pairs_find_wall(e, surface, err);
     e->n_point[VG_INNER] += e->n_pair;
   }
   if (st < 0) vg_expand_close(e);
@@ -168,14 +171,22 @@ static void place_columns(void *context, size_t first, size_t end, int worker)
       vg_expand_column(e, p->surface, i, p->point + e->base[i]);
 }
 
+/* After the columns. */
 static void place_middles(void *context, size_t first, size_t end, int worker)
 {
   const struct points *p = context;
+  const struct vg_expand *e = p->e;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    if (vg_pair_is_first(p->e, i))
-      vg_pair_middle(p->e, p->surface, i, p->point[p->e->middle[i]]);
+  for (size_t i = first; i < end; i++) {
+    uint32_t q[4], base[4];
+
+    if (!vg_pair_is_first(e, i)) continue;
+    vg_pair_corners(e, i, q);
+    for (int k = 0; k < 4; k++) base[k] = e->base[q[k]];
+    vg_pair_middle_of((const double(*)[3])p->point, base, vg_pair_levels(e, q),
+                      p->point[e->middle[i]]);
+  }
 }
 
 void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,
@@ -198,8 +209,8 @@ vg_status vg_layers_count(const struct vg_mesh *surface,
   assert(n && threads >= 0);
 
   struct vg_expand e;
-  vg_status st = vg_expand_open(&e, surface, &layers->columns,
-                                cells == VG_LAYER_MIXED, threads, err);
+  vg_status st = vg_expand_open(&e, surface, &layers->columns, cells, threads,
+                                err);
 
   if (st < 0) return st;
   /* Any numbers will do if columns of one root have the same. */

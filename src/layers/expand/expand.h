@@ -11,6 +11,7 @@
 #define VG_LAYERS_EXPAND_EXPAND_H
 
 #include "layers/columns/columns.h"
+#include "layers/expand/join.h"
 
 enum { VG_FLANK, VG_INNER }; /* Points on a slide patch, and all others. */
 enum { VG_KIND_TET, VG_KIND_PYR, VG_KIND_PRI, VG_KIND_HEX, VG_N_KIND };
@@ -31,17 +32,19 @@ struct vg_expand {
                               block are the first to use. */
   size_t *cell[VG_N_KIND]; /* [n_block + 1] cells; layer cells come first. */
   size_t n_point[2], n_cell[VG_N_KIND];
-  /* Pairs of virtual faces that make hexahedra (pairs.h); NULL: none. */
+  /* Pairs of faces that make hexahedra (pairs.h); NULL: none. */
   size_t n_pair;
+  double wall_quads; /* Share of the area of the walls in pairs. */
   uint32_t *partner; /* [columns->n_face] the other face; VG_NO_INDEX: none. */
   uint32_t *middle;  /* [columns->n_face] of the first face of a pair: index of
                         the point in its middle. */
 };
 
-/** Sets the marks of the columns and n_point; if mixed, finds the pairs. */
+/** Sets the marks of the columns and n_point, and finds the pairs. */
 vg_status vg_expand_open(struct vg_expand *e, const struct vg_mesh *surface,
-                         const struct vg_columns *columns, int mixed,
-                         int threads, struct vg_error *err);
+                         const struct vg_columns *columns,
+                         enum vg_layer_cells cells, int threads,
+                         struct vg_error *err);
 
 void vg_expand_close(struct vg_expand *e);
 

@@ -191,12 +191,13 @@ int vg_expand_corners(const struct vg_expand *e, size_t face,
 /* How a pair begins at the wall. Columns with a mark are raised after the
  * others; if both roots have one, the lower columns are raised first, as on the
  * faces next to them. */
-static enum vg_pair_start start_of(const struct vg_expand *e,
+static enum vg_pair_start start_of(const struct vg_expand *e, size_t face,
                                    const uint32_t q[4])
 {
   const int a = (e->mark[q[0]] & VG_MARK_SHARED) != 0;
   const int b = (e->mark[q[2]] & VG_MARK_SHARED) != 0;
 
+  if (e->columns->face_tri[face] != VG_NO_INDEX) return VG_PAIR_ON_WALL;
   if (!a && !b) return VG_PAIR_TOGETHER;
   if (a != b) return b ? VG_PAIR_FIRST_ROOT : VG_PAIR_SECOND_ROOT;
   return q[0] < q[2] ? VG_PAIR_FIRST_ROOT : VG_PAIR_SECOND_ROOT;
@@ -258,12 +259,11 @@ static void other_levels(int mixed, const uint32_t f[3], const unsigned n[3],
   }
 }
 
-/* The levels of both faces of a pair above those of its lower columns. */
-static void above_pair(const struct vg_expand *e, size_t face,
+/* The levels of both faces of a pair above those of its lowest column. */
+static void above_pair(const struct vg_expand *e, const size_t pair[2],
                        const uint32_t q[4], const uint32_t base[4],
                        struct vg_cell_sink *s)
 {
-  const size_t pair[2] = { face, e->partner[face] };
   const unsigned low = vg_pair_levels(e, q);
 
   for (int i = 0; i < 2; i++) {
@@ -302,27 +302,30 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
 {
   assert(face < e->columns->n_face && s);
 
+  size_t pair[2] = { face, 0 };
   uint32_t q[4];
 
   switch (vg_expand_corners(e, face, q)) {
   case 3: single_face(e, face, foot, base, s); break;
   case 4:
-    vg_expand_pair(e, face, q, start_of(e, q), foot, base, middle, s);
-    above_pair(e, face, q, base, s);
+    pair[1] = e->partner[face];
+    vg_expand_pair(e, pair, q, start_of(e, pair[0], q), foot, base, middle, s);
+    above_pair(e, pair, q, base, s);
     break;
   }
 }
 
-/* The cell on top of a pair whose columns have equal levels is a tetrahedron of
- * the top and the middle. */
-static int top_of_pair(const struct vg_expand *e, size_t face, uint32_t node[6])
+/* The cell on top of a face of a pair, without columns above the lowest of the
+ * pair, is a tetrahedron of the top and the middle. */
+static int top_of_pair(const struct vg_expand *e, size_t face, unsigned high,
+                       uint32_t node[6])
 {
   static const uint32_t tet[4] = { 3, 5, 4, 6 };
   const size_t first = face < e->partner[face] ? face : e->partner[face];
   uint32_t q[4];
 
   vg_pair_corners(e, first, q);
-  if (vg_mark_n(e->mark[q[0]]) != vg_mark_n(e->mark[q[2]])) return 0;
+  if (vg_pair_levels(e, q) < high) return 0;
   memcpy(node, tet, sizeof tet);
   return 4;
 }
@@ -352,7 +355,7 @@ int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
   for (int k = 0; k < 3; k++) high = n[k] > high ? n[k] : high;
   if (!high) return 0;
   if (e->partner && e->partner[face] != VG_NO_INDEX &&
-      top_of_pair(e, face, node))
+      top_of_pair(e, face, high, node))
     return 4;
   merge_roots(e->columns, f, p);
   for (int k = 0; k < 3; k++) {
@@ -402,27 +405,50 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   return n;
 }
 
+/* Adds the cells of the levels above `low` to the counts, for columns with n
+ * levels: those that three, two or one of the columns have. */
+static void count_above(int mixed, const unsigned n[3], unsigned low,
+                        size_t count[VG_N_KIND])
+{
+  unsigned more[3], least, most, mid;
+
+  for (int k = 0; k < 3; k++) more[k] = n[k] > low ? n[k] - low : 0;
+  least = more[0] < more[1] ? more[0] : more[1];
+  most = more[0] < more[1] ? more[1] : more[0];
+  if (more[2] < least) least = more[2];
+  if (more[2] > most) most = more[2];
+  mid = more[0] + more[1] + more[2] - least - most;
+  if (mixed) {
+    count[VG_KIND_PRI] += least;
+    count[VG_KIND_PYR] += mid - least;
+    count[VG_KIND_TET] += most - mid;
+  } else count[VG_KIND_TET] += least + mid + most;
+}
+
 /* Adds the cells of a pair to the counts. */
 static void count_pair(const struct vg_expand *e, size_t face,
                        const uint32_t q[4], size_t count[VG_N_KIND])
 {
   const size_t pair[2] = { face, e->partner[face] };
   const unsigned low = vg_pair_levels(e, q);
-  const int prism = start_of(e, q) == VG_PAIR_TOGETHER;
 
-  count[VG_KIND_PRI] += (size_t)prism;
   count[VG_KIND_HEX] += low - 2;
-  count[VG_KIND_PYR] += 5 + (size_t)!prism;
-  count[VG_KIND_TET] += 2 + (size_t)!prism;
+  count[VG_KIND_PYR] += 5;
+  count[VG_KIND_TET] += 2;
+  switch (start_of(e, face, q)) {
+  case VG_PAIR_ON_WALL: count[VG_KIND_HEX]++; break;
+  case VG_PAIR_TOGETHER: count[VG_KIND_PRI]++; break;
+  case VG_PAIR_FIRST_ROOT:
+  case VG_PAIR_SECOND_ROOT:
+    count[VG_KIND_PYR]++;
+    count[VG_KIND_TET]++;
+    break;
+  }
   for (int i = 0; i < 2; i++) {
-    unsigned n[3], high = 0, more = 0;
+    unsigned n[3];
 
     levels_of(e, e->columns->face[pair[i]], n);
-    for (int k = 0; k < 3; k++) {
-      more += n[k] > low;
-      high = n[k] > high ? n[k] : high;
-    }
-    count[more == 2 ? VG_KIND_PYR : VG_KIND_TET] += high - low;
+    count_above(1, n, low, count);
   }
 }
 
@@ -432,8 +458,9 @@ static void count_face(const struct vg_expand *e, const uint32_t f[3],
 {
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
   struct vg_cell_sink s = { tet, pyr, pri, NULL };
-  unsigned n[3], low = levels_of(e, f, n), high, mid;
+  unsigned n[3];
 
+  levels_of(e, f, n);
   for (int k = 0; k < 3; k++) {
     p[k] = e->foot[f[k]];
     h[k] = n[k] ? e->base[f[k]] : VG_NO_INDEX;
@@ -442,18 +469,7 @@ static void count_face(const struct vg_expand *e, const uint32_t f[3],
   count[VG_KIND_TET] += (size_t)(s.tet - tet);
   count[VG_KIND_PYR] += (size_t)(s.pyr - pyr);
   count[VG_KIND_PRI] += (size_t)(s.pri - pri);
-  if (is_edge(p)) return;
-  /* Levels above the first that three, two or one of the columns have. */
-  for (int k = 0; k < 3; k++) n[k] = n[k] ? n[k] - 1 : 0;
-  low = low ? low - 1 : 0;
-  high = n[0] > n[1] ? n[0] : n[1];
-  if (n[2] > high) high = n[2];
-  mid = n[0] + n[1] + n[2] - low - high;
-  if (e->mixed) {
-    count[VG_KIND_PRI] += low;
-    count[VG_KIND_PYR] += mid - low;
-    count[VG_KIND_TET] += high - mid;
-  } else count[VG_KIND_TET] += low + mid + high;
+  if (!is_edge(p)) count_above(e->mixed, n, 1, count);
 }
 
 static void count_blocks(void *context, size_t first, size_t end, int worker)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Cells of a pair of virtual faces below the level where its lower columns end.
+/* Cells of a pair of faces below the level where its lowest column ends.
  * Declared in layers/expand/pairs.h, which has the drawing. Rings of pyramids
  * are counter-clockwise seen from outside, so that the apex is behind them. */
 #include <assert.h>
@@ -23,10 +23,21 @@ static void put_tet(struct vg_cell_sink *s, uint32_t a, uint32_t b, uint32_t c,
   memcpy(*s->tet++, node, sizeof node);
 }
 
-/* Level 0: columns h[0], h[1] stand on root a, h[2], h[3] on root b. */
-static void from_wall(enum vg_pair_start start, uint32_t a, uint32_t b,
+static void put_hex(struct vg_cell_sink *s, const uint32_t p[4],
+                    const uint32_t h[4])
+{
+  uint32_t *n = *s->hex++;
+
+  memcpy(n, p, 4 * sizeof *n);
+  memcpy(n + 4, h, 4 * sizeof *n);
+}
+
+/* Level 0: columns h[0], h[1] stand on root a, h[2], h[3] on root b; or each
+ * column on its own root. */
+static void from_wall(enum vg_pair_start start, const uint32_t foot[4],
                       const uint32_t h[4], struct vg_cell_sink *s)
 {
+  const uint32_t a = foot[0], b = foot[2];
   const uint32_t prism[6] = { a, h[0], h[1], b, h[3], h[2] };
 
   switch (start) {
@@ -39,16 +50,15 @@ static void from_wall(enum vg_pair_start start, uint32_t a, uint32_t b,
     put_tet(s, b, a, h[2], h[3]);
     put_pyramid(s, h[0], h[1], h[2], h[3], a);
     break;
+  case VG_PAIR_ON_WALL: put_hex(s, foot, h); break;
   }
 }
 
 /* The last level, whose top is that of the single faces. p: points below it. */
-static void transition(const struct vg_expand *e, size_t face,
+static void transition(const struct vg_expand *e, const size_t pair[2],
                        const uint32_t q[4], const uint32_t p[4],
                        uint32_t middle, struct vg_cell_sink *s)
 {
-  const size_t pair[2] = { face, e->partner[face] };
-
   put_pyramid(s, p[0], p[3], p[2], p[1], middle);
   for (int k = 0; k < 4; k++) {
     const uint32_t a = p[k], b = p[(k + 1) % 4];
@@ -69,24 +79,22 @@ static void transition(const struct vg_expand *e, size_t face,
   }
 }
 
-void vg_expand_pair(const struct vg_expand *e, size_t face, const uint32_t q[4],
-                    enum vg_pair_start start, const uint32_t foot[4],
-                    const uint32_t base[4], uint32_t middle,
-                    struct vg_cell_sink *s)
+void vg_expand_pair(const struct vg_expand *e, const size_t pair[2],
+                    const uint32_t q[4], enum vg_pair_start start,
+                    const uint32_t foot[4], const uint32_t base[4],
+                    uint32_t middle, struct vg_cell_sink *s)
 {
   const unsigned low = vg_pair_levels(e, q);
   uint32_t p[4];
 
   assert(low > 1);
   memcpy(p, base, sizeof p);
-  from_wall(start, foot[0], foot[2], base, s);
+  from_wall(start, foot, base, s);
   for (unsigned l = 1; l + 1 < low; l++) {
-    uint32_t *n = *s->hex++;
+    const uint32_t h[4] = { p[0] + 1, p[1] + 1, p[2] + 1, p[3] + 1 };
 
-    for (int k = 0; k < 4; k++) {
-      n[k] = p[k];
-      n[4 + k] = ++p[k];
-    }
+    put_hex(s, p, h);
+    memcpy(p, h, sizeof p);
   }
-  transition(e, face, q, p, middle, s);
+  transition(e, pair, q, p, middle, s);
 }

@@ -6,17 +6,23 @@
 
 #include "layers/columns/layers.h"
 
-enum vg_layer_cells { VG_LAYER_TETS, VG_LAYER_MIXED };
+enum vg_layer_cells { VG_LAYER_TETS, VG_LAYER_MIXED, VG_LAYER_HEX };
 
 struct vg_join_info {
+  enum vg_layer_cells cells;
   size_t n_boundary_point; /* Boundary points; they come first. */
   size_t n_layer_point;    /* One past the index of the last layer point
                               (npv). */
   size_t n_layer_tet, n_layer_pyr, n_layer_pri, n_layer_hex; /* Number of layer
                                                    cells, which are the first of
                                                    their kind. */
-  double time; /* Wall-clock seconds. */
+  size_t n_raised_point; /* Layer points that are not on the wall. */
+  double wall_quads;     /* Share of the area of the walls in quadrilaterals. */
+  double time;           /* Wall-clock seconds. */
 };
+
+/** Layer cells over layer points that are not on the wall; 0 without points. */
+double vg_join_density(const struct vg_join_info *info);
 
 /** Merges layers and field into one mesh.
  *
@@ -39,6 +45,10 @@ struct vg_join_info {
  * in pairs are raised last, one at a time, which makes pyramids and tetrahedra,
  * and triangles on the side faces (a prism over an edge collapsed to a point is
  * not a valid cell in any format).
+ *
+ * VG_LAYER_HEX: as VG_LAYER_MIXED, but most wall triangles are in pairs too,
+ * which make quadrilaterals on the wall and hexahedra above (pairs.h). They
+ * follow the remaining triangles of their patch, before the side faces.
  *
  * @param field   mesh of the void within layers->front; its first points are
  *                those of the front

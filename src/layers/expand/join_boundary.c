@@ -6,11 +6,13 @@
 
 #include "base/memory.h"
 #include "layers/expand/join_plan.h"
+#include "layers/expand/pairs.h"
 
 struct work {
   const struct vg_join_plan *p;
   struct vg_mesh *m;
   uint8_t *stays;     /* [surface->n_tri] 1: the triangle remains. */
+  uint8_t *paired;    /* [surface->n_tri] 1: part of a quadrilateral. */
   uint8_t *changed;   /* [n_patch] 1: the patch was remeshed. */
   size_t *tri, *quad; /* [n_patch] index of the next new face of each patch. */
 };
@@ -92,6 +94,17 @@ static vg_status find_changes(struct work *w, struct vg_error *err)
   return st;
 }
 
+/* Marks the triangles of the walls that are in quadrilaterals. They remain, but
+ * not as triangles. */
+static void find_quads(struct work *w)
+{
+  const struct vg_expand *e = &w->p->expand;
+
+  for (size_t i = 0; e->partner && i < e->columns->n_face; i++)
+    if (e->columns->face_tri[i] != VG_NO_INDEX)
+      w->paired[e->columns->face_tri[i]] = e->partner[i] != VG_NO_INDEX;
+}
+
 static vg_status reserve_boundary(struct vg_mesh *m, struct vg_error *err)
 {
   m->tri = vg_alloc(m->n_tri, sizeof *m->tri);
@@ -113,6 +126,13 @@ static int is_new(const struct work *w, size_t i)
          w->changed[w->p->front->patch[i]];
 }
 
+/* Whether face i is the first of a pair on a wall. */
+static int is_quad(const struct work *w, size_t i)
+{
+  return w->p->columns->face_tri[i] != VG_NO_INDEX &&
+         vg_pair_is_first(&w->p->expand, i);
+}
+
 /* Counts faces by patch, then turns the counts into first indices. */
 static void count_boundary(struct work *w)
 {
@@ -128,9 +148,11 @@ static void count_boundary(struct work *w)
     w->tri[c->border_patch[r]] += tri;
     w->quad[c->border_patch[r]] += quad;
   }
+  for (size_t i = 0; i < c->n_face; i++)
+    if (is_quad(w, i)) w->quad[s->tri_patch[c->face_tri[i]]]++;
   for (size_t i = 0; i < f->n_face; i++)
     if (is_new(w, i)) w->tri[f->patch[i]]++;
-  for (size_t i = 0; i < s->n_tri; i++) n_tri += w->stays[i];
+  for (size_t i = 0; i < s->n_tri; i++) n_tri += w->stays[i] && !w->paired[i];
   for (size_t q = 0; q < s->n_patch; q++) {
     size_t tri = w->tri[q], quad = w->quad[q];
 
@@ -160,6 +182,24 @@ static void fill_flanks(struct work *w)
   }
 }
 
+static void fill_quads(struct work *w)
+{
+  const struct vg_columns *c = w->p->columns;
+  const struct vg_expand *e = &w->p->expand;
+
+  for (size_t i = 0; i < c->n_face; i++) {
+    uint32_t q[4], patch;
+    size_t to;
+
+    if (!is_quad(w, i)) continue;
+    vg_pair_corners(e, i, q);
+    patch = w->p->surface->tri_patch[c->face_tri[i]];
+    to = w->quad[patch]++;
+    for (int k = 0; k < 4; k++) w->m->quad[to][k] = e->foot[q[k]];
+    w->m->quad_patch[to] = patch;
+  }
+}
+
 static void fill_boundary(struct work *w)
 {
   const struct vg_mesh *s = w->p->surface;
@@ -168,10 +208,11 @@ static void fill_boundary(struct work *w)
   size_t at = 0;
 
   for (size_t i = 0; i < s->n_tri; i++)
-    if (w->stays[i]) {
+    if (w->stays[i] && !w->paired[i]) {
       for (int k = 0; k < 3; k++) m->tri[at][k] = w->p->root[s->tri[i][k]];
       m->tri_patch[at++] = s->tri_patch[i];
     }
+  fill_quads(w);
   fill_flanks(w);
   for (size_t i = 0; i < f->n_face; i++)
     if (is_new(w, i)) {
@@ -200,22 +241,25 @@ vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err)
   struct work w = { p,
                     &p->boundary,
                     vg_calloc(p->surface->n_tri, 1),
+                    vg_calloc(p->surface->n_tri, 1),
                     vg_calloc(n, 1),
                     vg_calloc(n, sizeof *w.tri),
                     vg_calloc(n, sizeof *w.quad) };
   vg_status st;
 
-  if (!w.stays || !w.changed || !w.tri || !w.quad) {
+  if (!w.stays || !w.paired || !w.changed || !w.tri || !w.quad) {
     st = vg_fail_memory(err, "the boundary of the mesh");
     goto done;
   }
   VG_TRY(find_changes(&w, err));
+  find_quads(&w);
   count_boundary(&w);
   VG_TRY(reserve_boundary(w.m, err));
   fill_boundary(&w);
   VG_TRY(copy_patches(&w, err));
 done:
   free(w.stays);
+  free(w.paired);
   free(w.changed);
   free(w.tri);
   free(w.quad);

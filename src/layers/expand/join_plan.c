@@ -118,14 +118,14 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
   p->surface = surface;
   p->columns = &layers->columns;
   p->front = &layers->front;
+  p->cells = cells;
   p->root = vg_alloc(surface->n_point, sizeof *p->root);
   p->id = vg_alloc(p->front->n_point, sizeof *p->id);
   if (!p->root || !p->id) {
     st = vg_fail_memory(err, "joining layers and field");
     goto done;
   }
-  VG_TRY(vg_expand_open(&p->expand, surface, p->columns,
-                        cells == VG_LAYER_MIXED, threads, err));
+  VG_TRY(vg_expand_open(&p->expand, surface, p->columns, cells, threads, err));
   VG_TRY(number_points(p, n_field_point, err));
   VG_TRY(vg_join_boundary(p, err));
   check_boundary(p);
@@ -163,11 +163,22 @@ void vg_join_plan_describe(const struct vg_join_plan *p, double time,
   const struct vg_expand *e = &p->expand;
 
   if (!info) return;
+  info->cells = p->cells;
   info->n_boundary_point = p->first_inner;
   info->n_layer_point = p->first_field;
   info->n_layer_tet = e->n_cell[VG_KIND_TET];
   info->n_layer_pyr = e->n_cell[VG_KIND_PYR];
   info->n_layer_pri = e->n_cell[VG_KIND_PRI];
   info->n_layer_hex = e->n_cell[VG_KIND_HEX];
+  info->n_raised_point = e->n_point[VG_FLANK] + e->n_point[VG_INNER];
+  info->wall_quads = e->wall_quads;
   info->time = time;
+}
+
+double vg_join_density(const struct vg_join_info *info)
+{
+  const size_t n = info->n_layer_tet + info->n_layer_pyr + info->n_layer_pri +
+                   info->n_layer_hex;
+
+  return info->n_raised_point ? (double)n / (double)info->n_raised_point : 0;
 }

@@ -12,6 +12,7 @@ struct vg_join_plan {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
   const struct vg_front *front;
+  enum vg_layer_cells cells;
   struct vg_expand expand;
   uint32_t *root; /* [surface->n_point] point of the mesh, or VG_NO_INDEX. */
   uint32_t *id;   /* [front n_point] point of the mesh. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Finds the pairs of virtual faces that become stacks of hexahedra. Declared in
- * layers/expand/pairs.h. */
+/* Finds the pairs of virtual faces that become stacks of hexahedra, and checks
+ * the cells of any pair. Declared in layers/expand/pairs.h. */
 #include "layers/expand/pairs.h"
 
 #include <assert.h>
@@ -13,6 +13,13 @@
 #include "layers/expand/expand_parts.h"
 
 #define PAIR_GRAIN 16
+
+/* L30 */
+/* Least square of the cosines between the faces of a cell in a pair of wall
+ * faces and the lines from its centre to theirs: 87 degrees. */
+#define CENTRED 0.0025
+/* The same for a hexahedron above which the thicker ones are not tested. */
+#define WELL_CENTRED 0.25
 
 /* An edge between columns of two roots, of a virtual face that has one column
  * of one root (`single`) and two of the other. */
@@ -157,12 +164,12 @@ int vg_pair_is_first(const struct vg_expand *e, size_t face)
          face < e->partner[face];
 }
 
-void vg_pair_corners(const struct vg_expand *e, size_t face, uint32_t q[4])
+void vg_pair_ring(const struct vg_columns *c, const size_t pair[2],
+                  uint32_t q[4])
 {
-  assert(vg_pair_is_first(e, face));
+  assert(pair[0] < c->n_face && pair[1] < c->n_face);
 
-  const struct vg_columns *c = e->columns;
-  const uint32_t *f = c->face[face], *g = c->face[e->partner[face]];
+  const uint32_t *f = c->face[pair[0]], *g = c->face[pair[1]];
   uint32_t ring[4];
   int k = 0, j = 0, turn;
 
@@ -172,15 +179,30 @@ void vg_pair_corners(const struct vg_expand *e, size_t face, uint32_t q[4])
   ring[1] = f[(k + 1) % 3];
   ring[2] = g[j];
   ring[3] = f[(k + 2) % 3];
-  turn = root_of(c, ring[0]) != root_of(c, ring[1]);
+  turn = c->face_tri[pair[0]] == VG_NO_INDEX &&
+         root_of(c, ring[0]) != root_of(c, ring[1]);
   for (int i = 0; i < 4; i++) q[i] = ring[(i + turn) % 4];
+}
+
+void vg_pair_corners(const struct vg_expand *e, size_t face, uint32_t q[4])
+{
+  assert(vg_pair_is_first(e, face));
+
+  const size_t pair[2] = { face, e->partner[face] };
+
+  vg_pair_ring(e->columns, pair, q);
 }
 
 unsigned vg_pair_levels(const struct vg_expand *e, const uint32_t q[4])
 {
-  const unsigned a = vg_mark_n(e->mark[q[0]]), b = vg_mark_n(e->mark[q[2]]);
+  unsigned low = vg_mark_n(e->mark[q[0]]);
 
-  return a < b ? a : b;
+  for (int k = 1; k < 4; k++) {
+    const unsigned n = vg_mark_n(e->mark[q[k]]);
+
+    if (n < low) low = n;
+  }
+  return low;
 }
 
 /* The points of a pair as a small mesh: those of column k begin at k *
@@ -190,23 +212,31 @@ struct stack {
 };
 #define MIDDLE (4 * (VG_LEVELS_MAX + 1))
 
+void vg_pair_middle_of(const double (*x)[3], const uint32_t base[4],
+                       unsigned low, double middle[3])
+{
+  assert(low > 1);
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+
+    for (int k = 0; k < 4; k++)
+      for (unsigned l = low - 1; l <= low; l++) sum += x[base[k] + l - 1][i];
+    middle[i] = sum / 8;
+  }
+}
+
 static void load(const struct vg_expand *e, const struct vg_mesh *surface,
                  const uint32_t q[4], struct stack *s)
 {
   double d[VG_LEVELS_MAX + 1];
-  const unsigned low = vg_pair_levels(e, q);
+  uint32_t base[4];
 
-  for (size_t k = 0; k < 4; k++)
-    vg_column_points(e->columns, surface, q[k], d,
-                     s->x + k * (VG_LEVELS_MAX + 1));
-  for (int i = 0; i < 3; i++) {
-    double sum = 0;
-
-    for (size_t k = 0; k < 4; k++)
-      for (unsigned l = low - 1; l <= low; l++)
-        sum += s->x[k * (VG_LEVELS_MAX + 1) + l][i];
-    s->x[MIDDLE][i] = sum / 8;
+  for (uint32_t k = 0; k < 4; k++) {
+    base[k] = k * (VG_LEVELS_MAX + 1) + 1;
+    vg_column_points(e->columns, surface, q[k], d, s->x + base[k] - 1);
   }
+  vg_pair_middle_of((const double(*)[3])s->x, base, vg_pair_levels(e, q),
+                    s->x[MIDDLE]);
 }
 
 void vg_pair_middle(const struct vg_expand *e, const struct vg_mesh *surface,
@@ -245,33 +275,59 @@ static int all_positive(const struct stack *s, const struct cells *c,
   return 1;
 }
 
-/* All cells up to the level where the lower columns end, with each of the ways
+/* Whether no centre of a cell is behind or close to one of its faces, as in
+ * warped hexahedra that are thin. */
+static int all_centred(const struct stack *s, const struct cells *c,
+                       const struct vg_cell_sink *end)
+{
+  const double(*x)[3] = (const double(*)[3])s->x;
+
+  for (size_t i = 0; c->pyr + i < end->pyr; i++)
+    if (!(vg_cell_cosine2(x, 1, c->pyr[i]) >= CENTRED)) return 0;
+  for (size_t i = 0; c->hex + i < end->hex; i++) {
+    const double least = vg_cell_cosine2(x, 3, c->hex[i]);
+
+    if (!(least >= CENTRED)) return 0;
+    if (least >= WELL_CENTRED) break;
+  }
+  return 1;
+}
+
+/* All cells up to the level where the lowest column ends, with each of the ways
  * to begin at the wall. Those above are the cells of single faces, which were
  * tested when the layers grew. */
-static int is_good(const struct vg_expand *e, const struct vg_mesh *surface,
-                   size_t face)
+int vg_pair_is_good(const struct vg_expand *e, const struct vg_mesh *surface,
+                    const size_t pair[2])
 {
-  static const enum vg_pair_start start[] = { VG_PAIR_TOGETHER,
-                                              VG_PAIR_FIRST_ROOT,
-                                              VG_PAIR_SECOND_ROOT };
+  static const enum vg_pair_start start[] = {
+    VG_PAIR_TOGETHER, VG_PAIR_FIRST_ROOT, VG_PAIR_SECOND_ROOT, VG_PAIR_ON_WALL
+  };
+  const int on_wall = e->columns->face_tri[pair[0]] != VG_NO_INDEX;
+  unsigned low;
   struct stack s;
   struct cells c;
-  uint32_t q[4], foot[4], base[4];
+  uint32_t q[4], foot[4], base[4], last[4];
 
-  vg_pair_corners(e, face, q);
-  for (int k = 0; k < 4; k += 2)
+  vg_pair_ring(e->columns, pair, q);
+  for (int k = 0; k < 4 && !on_wall; k += 2)
     if (vg_mark_n(e->mark[q[k]]) != vg_mark_n(e->mark[q[k + 1]])) return 0;
-  if (vg_pair_levels(e, q) < 2) return 0;
+  low = vg_pair_levels(e, q);
+  if (low < 2) return 0;
   load(e, surface, q, &s);
+  for (uint32_t k = 0; k < 4; k++) last[k] = k * (VG_LEVELS_MAX + 1) + low - 1;
+  if (on_wall && !vg_pair_level_is_sound((const double(*)[3])s.x, last, MIDDLE))
+    return 0;
   for (uint32_t k = 0; k < 4; k++) {
-    foot[k] = (k < 2 ? 0 : 2) * (VG_LEVELS_MAX + 1);
+    foot[k] = (on_wall ? k : k / 2 * 2) * (VG_LEVELS_MAX + 1);
     base[k] = k * (VG_LEVELS_MAX + 1) + 1;
   }
-  for (size_t i = 0; i < sizeof start / sizeof *start; i++) {
+  for (int i = on_wall ? VG_PAIR_ON_WALL : 0; i < (on_wall ? 4 : 3); i++) {
     struct vg_cell_sink sink = { c.tet, c.pyr, c.pri, c.hex };
 
-    vg_expand_pair(e, face, q, start[i], foot, base, MIDDLE, &sink);
-    if (!all_positive(&s, &c, &sink)) return 0;
+    vg_expand_pair(e, pair, q, start[i], foot, base, MIDDLE, &sink);
+    if (!all_positive(&s, &c, &sink) ||
+        (on_wall && !all_centred(&s, &c, &sink)))
+      return 0;
   }
   return 1;
 }
@@ -281,8 +337,12 @@ static void test_body(void *context, size_t first, size_t end, int worker)
   const struct search *q = context;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    q->bad[i] = vg_pair_is_first(q->e, i) && !is_good(q->e, q->surface, i);
+  for (size_t i = first; i < end; i++) {
+    const size_t pair[2] = { i, q->e->partner[i] };
+
+    q->bad[i] = vg_pair_is_first(q->e, i) &&
+                !vg_pair_is_good(q->e, q->surface, pair);
+  }
 }
 
 static void drop_bad(struct search *q)

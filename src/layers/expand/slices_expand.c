@@ -188,11 +188,16 @@ static void place_points(const struct run *r, struct vg_layer_slice *at,
     for (unsigned l = 0; l < n; l++) at->id[r->base[i] + l] = e->base[c] + l;
   }
   for (size_t i = 0; i < r->n_face; i++) {
-    uint32_t p;
+    uint32_t p, q[4], base[4];
 
     if (r->n_corner[i] < 4) continue;
     p = middle_of(r, i);
-    vg_pair_middle(e, surface, r->face[i], at->x[p]);
+    for (int k = 0; k < 4; k++) {
+      q[k] = r->column[r->corner[i][k]];
+      base[k] = r->base[r->corner[i][k]];
+    }
+    vg_pair_middle_of((const double(*)[3])at->x, base, vg_pair_levels(e, q),
+                      at->x[p]);
     at->id[p] = e->middle[r->face[i]];
   }
 }

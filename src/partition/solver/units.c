@@ -131,6 +131,65 @@ static void forget(struct work *w)
   }
 }
 
+/* Joins a cell to the stack of another one. */
+static void add_to_stack(struct work *w, uint32_t cell, uint32_t mate)
+{
+  w->stands[mate] = 1;
+  vg_union(w->up, mate, cell);
+}
+
+/* Joins the level between a hexahedron and the two triangles on top of a pair
+ * of wall faces: a pyramid on the hexahedron, pyramids on its triangles, and
+ * tetrahedra on theirs, whose face 3 is the top. */
+static void join_last_level(struct work *w, uint32_t hex)
+{
+  const struct vg_cell_links *l = w->l;
+  const uint32_t low = vg_mate(l, hex << 3 | 5) >> 3;
+
+  if (low == NONE >> 3 || kind_of(l, low) != PYR || !is_layer(w, low)) return;
+  add_to_stack(w, hex, low);
+  for (uint32_t i = 0; i < 16; i++) {
+    const uint32_t side = vg_mate(l, low << 3 | i / 4) >> 3;
+    uint32_t tet, above;
+
+    if (side == NONE >> 3 || kind_of(l, side) != PYR) continue;
+    add_to_stack(w, hex, side);
+    tet = vg_mate(l, side << 3 | i % 4) >> 3;
+    if (tet == NONE >> 3 || kind_of(l, tet) != TET || !is_layer(w, tet))
+      continue;
+    add_to_stack(w, hex, tet);
+    above = vg_mate(l, tet << 3 | 3);
+    if (above != NONE && is_layer(w, above >> 3) &&
+        bottom_of(l, above >> 3) == above)
+      add_to_stack(w, hex, above >> 3);
+  }
+}
+
+/* Joins the hexahedra of Vanguard's layers, whose nodes 0 to 3 are below. */
+static void join_layer_hexahedra(struct work *w)
+{
+  const struct vg_cell_links *l = w->l;
+
+  if (!w->o->is_known) return;
+  for (uint32_t i = 0; i < w->o->n_layer[3]; i++) {
+    uint32_t cell = l->end_pri + i, mate = vg_mate(l, cell << 3 | 4);
+
+    w->stands[cell] = 1;
+    if (mate != NONE && kind_of(l, mate >> 3) == HEX &&
+        is_layer(w, mate >> 3) && (mate & 7) == 5)
+      vg_union(w->up, cell, mate >> 3);
+  }
+  for (uint32_t i = 0; i < w->o->n_layer[3]; i++) {
+    uint32_t cell = l->end_pri + i, up;
+
+    if (vg_mate(l, cell << 3 | 4) != NONE) continue;
+    while ((up = vg_mate(l, cell << 3 | 5)) != NONE &&
+           kind_of(l, up >> 3) == HEX)
+      cell = up >> 3;
+    join_last_level(w, cell);
+  }
+}
+
 /* Returns 0 if the declared layer cells of a file are not built like
  * Vanguard's: some stand NOWHERE, or too many are ASIDE. In Vanguard's layers
  * only the first cells of stacks in fans are ASIDE, one cell in dozens. */
@@ -142,26 +201,11 @@ static int join_layers(struct work *w)
 
   for (int k = 0; k < 2; k++)
     for (uint32_t i = 0; i < w->o->n_layer[k]; i++) {
+      if (w->stands[first[k] + i]) continue; /* On hexahedra. */
       w->stands[first[k] + i] = 1;
       n[stand(w, first[k] + i)]++;
     }
   return w->o->is_ours || (!n[NOWHERE] && n[ASIDE] <= n[FIRM] / 2);
-}
-
-/* Joins the hexahedra of Vanguard's layers, whose nodes 0 to 3 are below. */
-static void join_layer_hexahedra(struct work *w)
-{
-  const struct vg_cell_links *l = w->l;
-
-  if (!w->o->is_known || w->u->has_loose) return;
-  for (uint32_t i = 0; i < w->o->n_layer[3]; i++) {
-    uint32_t cell = l->end_pri + i, mate = vg_mate(l, cell << 3 | 4);
-
-    w->stands[cell] = 1;
-    if (mate != NONE && kind_of(l, mate >> 3) == HEX &&
-        is_layer(w, mate >> 3) && (mate & 7) == 5)
-      vg_union(w->up, cell, mate >> 3);
-  }
 }
 
 /* Climbs from a face of a hexahedron on a wall to the hexahedra above.
@@ -194,6 +238,7 @@ static void join_all(struct work *w)
   uint32_t n_loose = l->end_tet;
 
   forget(w);
+  join_layer_hexahedra(w);
   if (w->o->is_known && !join_layers(w)) {
     forget(w);
     w->u->has_loose = 1;
@@ -204,7 +249,6 @@ static void join_all(struct work *w)
   for (uint32_t cell = l->end_pyr;
        w->o->is_known && !w->u->has_loose && cell < l->end_pri; cell++)
     stand(w, cell);
-  join_layer_hexahedra(w);
   join_hexahedra(w);
 }
 

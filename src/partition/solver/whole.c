@@ -129,7 +129,8 @@ static struct vg_unit_options unit_options(const struct vg_mesh *m,
     u.is_known = 1;
     u.n_layer[0] = at->n_tet < m->n_tet ? at->n_tet : m->n_tet;
     u.n_layer[1] = m->n_pyr;
-    n_layer += u.n_layer[0] + u.n_layer[1];
+    u.n_layer[3] = m->n_hex;
+    n_layer += u.n_layer[0] + u.n_layer[1] + u.n_layer[3];
   }
   if (at) u.is_wall = at->is_wall;
   u.cluster = vg_unit_cluster(o, (uint64_t)m->n_tet + m->n_pyr + m->n_pri +

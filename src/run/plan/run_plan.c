@@ -143,7 +143,7 @@ static void count_mesh(struct vg_plan *p)
   double faces = (double)p->front->n_tri, field = p->load.cells;
 
   p->tet = field;
-  if (p->problem->resolved.settings.cells == VG_LAYER_MIXED)
+  if (p->problem->resolved.settings.cells != VG_LAYER_TETS)
     p->prism = p->layer_tet / 3;
   else p->tet += p->layer_tet;
   p->cell = p->tet + p->prism;

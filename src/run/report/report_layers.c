@@ -254,6 +254,11 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
   if (j->n_layer_hex)
     fprintf(to, ", %s hexahedra", vg_text_count(j->n_layer_hex, a));
   fputc('\n', to);
+  if (j->cells == VG_LAYER_HEX)
+    fprintf(to,
+            "  quadrilaterals: %.1f %% of the area of the walls; layer cells "
+            "per point: %.2f\n",
+            100 * j->wall_quads, vg_join_density(j));
   fprintf(to,
           "  rounds of height reduction until free of collisions: %zu; slide "
           "patches remeshed: %zu, %s triangles\n",
@@ -471,6 +476,10 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
   json_object_set_new(o, "limits_met", json_boolean(!s->n_missed));
   json_object_set_new(o, "limits_missed", missed_json(s, surface));
   json_object_set_new(o, "seconds", seconds_json(s));
+  json_object_set_new(o, "percent_wall_quadrilaterals",
+                      vg_json_real(100 * s->join.wall_quads));
+  json_object_set_new(o, "cells_per_point",
+                      vg_json_real(vg_join_density(&s->join)));
   json_object_set_new(o, "columns_per_second",
                       vg_json_count(rate(r->n_column, r->time_total)));
   json_object_set_new(o, "cells_per_second",

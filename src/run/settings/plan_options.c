@@ -198,7 +198,7 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
 
   o.fan_angle = s->layer.fan_angle;
   if (!isnan(s->layer.end)) o.end = s->layer.end;
-  else if (s->cells == VG_LAYER_MIXED) o.end = VG_LAYER_END_MIXED;
+  else if (s->cells != VG_LAYER_TETS) o.end = VG_LAYER_END_MIXED;
   o.gap = s->layer.gap;
   o.slope = s->layer.slope;
   o.jump = s->layer.jump;

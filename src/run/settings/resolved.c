@@ -59,7 +59,7 @@ void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX])
 {
   snprintf(write, VG_WRITE_MAX, "%s",
            strcmp(s->write, "auto") != 0 ? s->write
-           : s->cells == VG_LAYER_MIXED  ? "b8.ugrid"
+           : s->cells != VG_LAYER_TETS   ? "b8.ugrid"
                                          : "cogsg,b8.ugrid");
 }
 

@@ -199,8 +199,9 @@ VG_ROW(FLAG, plain, report_html, "report_html", 1,
   "of the run with pictures")
 VG_ROW(WORD, plain, cells, "cells", 0,
   .is_common = 1,
-  .words = cell_words, .unit = "", .help = "Cell types in the layers: tets, "
-  "or mixed (prisms, pyramids and tetrahedra)")
+  .words = cell_words, .unit = "", .help = "Cell types in the layers: tets; "
+  "mixed (prisms, pyramids and tetrahedra); or hex (pairs of wall triangles "
+  "become quadrilaterals with hexahedra, the others as with mixed)")
 VG_ROW(FLAG, plain, ugrid_tail, "ugrid_tail", 0,
   .topic = VG_TOPIC_OUTPUT,
   .keeps_mesh = 1, .unit = "", .help = "Append the number of layer tetrahedra "

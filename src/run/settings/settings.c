@@ -43,7 +43,7 @@ static const char *const cad_patch_words[] = { "face",  "name", "colour",
 /* In the order of enum vg_cad_solids. */
 static const char *const solid_words[] = { "auto", "only", "all", NULL };
 /* In the order of enum vg_layer_cells. */
-static const char *const cell_words[] = { "tets", "mixed", NULL };
+static const char *const cell_words[] = { "tets", "mixed", "hex", NULL };
 /* In the order of enum vg_decomposition_method, enum vg_partitioner. */
 static const char *const decompose_words[] = { "advancing", "discrete",
                                                "octree", NULL };

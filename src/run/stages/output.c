@@ -128,10 +128,11 @@ static const char *hits_input(const struct vg_outputs *o,
 static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
                               struct vg_error *err)
 {
-  if (s->cells != VG_LAYER_MIXED || strcmp(item, "cogsg") != 0) return VG_OK;
+  if (s->cells == VG_LAYER_TETS || strcmp(item, "cogsg") != 0) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "write: a .cogsg can hold only tetrahedra, but cells is "
-                 "mixed; write b8.ugrid, or set cells to tets");
+                 "write: a .cogsg can hold only tetrahedra, but cells is %s; "
+                 "write b8.ugrid, or set cells to tets",
+                 s->cells == VG_LAYER_HEX ? "hex" : "mixed");
 }
 
 static vg_status refuse_hit(const struct vg_outputs *o,

@@ -192,6 +192,31 @@ vanguard check -q mixed/box.b8.ugrid
 exits 0
 says out "validity: valid"
 
+# Hexahedra on quadrilaterals of the wall: the same columns as with prisms, the same
+# bytes for any number of threads, and no .cogsg.
+thick="--walls 5 --first 0.02 --layer-count 8 --leaf-cells 1000"
+vanguard mesh -q -p p/box $thick --cells mixed --out prisms
+exits 0
+vanguard mesh -q -p p/box $thick --cells hex --threads 1 --out hex \
+  --write b8.ugrid,foam,vtu --solver-parts 3
+exits 0
+says out "% of the area of the walls; layer cells per point:"
+says hex/box.report.html "wall area in quadrilaterals"
+grep -q '"hexahedra": [1-9]' hex/box.report.json || fail "no hexahedra"
+grep -q '"percent_wall_quadrilaterals": [1-9]' hex/box.report.json ||
+  fail "no quadrilaterals"
+for c in prisms hex; do   # locations and quality of the field; not its numbers
+  sed -n '/^  "field": {/,/^  }/p' $c/box.report.json | grep -v '"cell": ' >$c.field
+done
+same prisms.field hex.field
+vanguard check -q hex/box.b8.ugrid
+exits 0
+says out "validity: valid"
+vanguard mesh -q -p p/box $thick --cells hex --threads 2 --out hex2
+exits 0
+same hex/box.b8.ugrid hex2/box.b8.ugrid
+refuse "but cells is hex" $thick --cells hex --write cogsg
+
 # The tail of a .ugrid is one integer.
 vanguard mesh -q -p p/box --walls 5 --first 1e-3 --ugrid-tail yes --out tail
 exits 0

@@ -75,9 +75,9 @@ expect() {
   complete_words "$@"
   [ "$(tr '\n' ' ' <out)" = "$expected " ] || fail "$*: $(tr '\n' ' ' <out)"
 }
-expect "tets mixed" vanguard mesh --cells = ""
+expect "tets mixed hex" vanguard mesh --cells = ""
 expect "mixed" vanguard mesh --cells = m
-expect "tets mixed" vanguard check --cells ""
+expect "tets mixed hex" vanguard check --cells ""
 expect "no yes" vanguard surface --repair =
 expect "vtu,su2" vanguard mesh --write vtu,su
 expect "wing-half" vanguard demo wing-h
