@@ -19,8 +19,8 @@
 #define NEEDLE 5.0         /* S56: degrees */
 /* Share of the triangles; a larger share of needles is repaired. */
 #define MANY 1e-3
-/* Share of the triangles; above it most of them are slivers. */
-#define MOST 0.5
+/* Share of the triangles; above it a tessellation is remeshed. */
+#define MOST 0.2 /* S49 */
 /* Largest relative difference between the areas of a patch and its CAD faces.
  */
 #define AREA_NEAR 0.05

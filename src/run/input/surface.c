@@ -390,6 +390,19 @@ static int is_open_for_good(const struct vg_boundary *b,
          !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
 }
 
+/* A sound tessellation that nobody asked to remesh stays as given if new
+ * triangles would intersect. */
+static vg_status keep_given(struct vg_boundary *b, const struct vg_error *why)
+{
+  if (b->model.cad || b->check.n_defect ||
+      b->read->settings.remesh != VG_ANSWER_AUTO)
+    return VG_ERR_GEOMETRY;
+  vg_remeshing_release(&b->remeshing);
+  b->is_remeshed = 0;
+  vg_note(b->notes, "the surface stays as given, since %s", why->text);
+  return VG_OK;
+}
+
 /* One tessellation of the surface: closes it, decides the flow, remeshes it. */
 static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
                        struct vg_display *show, struct vg_error *err)
@@ -411,6 +424,7 @@ static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
   if (!b->is_remeshed || o->has_maker) goto done;
   if (!is_reference(&b->check)) return defects(b, show, err);
   st = vg_boundary_remesh(b, show, &why);
+  if (st == VG_ERR_GEOMETRY) st = keep_given(b, &why);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
       vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
