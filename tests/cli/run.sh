@@ -24,7 +24,7 @@ vanguard() {
   ! grep -qaE "$strange" out err || fail "a number in the answer is wrong"
 }
 # Not a number, or nearly 2^64, unless it is quoted from the input.
-strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^)]"
+strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^a-zA-Z)]"
 strange="$strange|18446744073709"
 
 fail() {

@@ -25,7 +25,7 @@ fail() {
 }
 
 # Not a number, or nearly 2^64, unless it is quoted from the file.
-strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^)]"
+strange="(^|[^a-zA-Z'(])-?(nan|inf)([^a-zA-Z'._]|\$)|\(-?(nan|inf)[^a-zA-Z)]"
 strange="$strange|18446744073709"
 unites=1
 "$program" --version --verbose | grep -q "vanguard-wrap not found" && unites=0
