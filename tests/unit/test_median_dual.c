@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -74,6 +75,8 @@ static void boxes_are_orthogonal(void **state)
   assert_int_equal(q.n_face, 3 * SIDE * LEVEL);
   assert_int_equal(q.n_opposed, 0);
   assert_true(q.below[0] == 0 && q.below[1] == 0 && q.below[2] == 0);
+  /* steps from 0.01 to 0.49 to 6.5 in all directions */
+  near_to(q.volume_ratio_max / (49. * 49 * 49), 1, 1e-5);
   vg_mesh_release(&m);
 }
 
@@ -159,6 +162,62 @@ static int dual_face(const struct vg_mesh *m, uint32_t v, uint32_t w,
   return found;
 }
 
+/* Widens the range of point v by the tetrahedron from v to the middle of the
+ * side (v, w) and the centres of a cell and of its face j. */
+static void add_volume(const struct vg_mesh *m, int kind, const uint32_t *node,
+                       int j, uint32_t v, uint32_t w, double range[2])
+{
+  const struct vg_cell_faces *f = &vg_cell_faces[kind];
+  double x[3][3], volume;
+
+  centre_of(m, node, NULL, f->n_node, x[0]);
+  centre_of(m, node, f->node[j], j < f->n_tri ? 3 : 4, x[1]);
+  for (int k = 0; k < 3; k++) {
+    x[2][k] = (m->point[w][k] - m->point[v][k]) / 2;
+    x[0][k] -= m->point[v][k];
+    x[1][k] -= m->point[v][k];
+  }
+  volume = fabs(vg_triple(x[0], x[1], x[2])) / 6;
+  range[0] = fmin(range[0], volume);
+  range[1] = fmax(range[1], volume);
+}
+
+static void add_volumes(const struct vg_mesh *m, int kind, const uint32_t *node,
+                        double (*range)[2])
+{
+  const struct vg_cell_faces *f = &vg_cell_faces[kind];
+
+  for (int j = 0; j < f->n_face; j++) {
+    int n = j < f->n_tri ? 3 : 4;
+
+    for (int i = 0; i < n; i++) {
+      uint32_t v = node[f->node[j][i]], w = node[f->node[j][(i + 1) % n]];
+
+      add_volume(m, kind, node, j, v, w, range[v]);
+      add_volume(m, kind, node, j, w, v, range[w]);
+    }
+  }
+}
+
+static double volume_ratio(const struct vg_mesh *m)
+{
+  double(*range)[2] = vg_alloc(m->n_point, sizeof *range), most = 0;
+
+  shape_need(range);
+  for (size_t v = 0; v < m->n_point; v++) range[v][0] = 1e9, range[v][1] = 0;
+  for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
+    struct vg_cells c = vg_mesh_cells(m, kind);
+
+    for (size_t i = 0; i < c.n; i++)
+      add_volumes(m, kind, c.node + i * (size_t)vg_cell_faces[kind].n_node,
+                  range);
+  }
+  for (size_t v = 0; v < m->n_point; v++)
+    most = fmax(most, range[v][1] / range[v][0]);
+  free(range);
+  return most;
+}
+
 static void check(const struct vg_mesh *m)
 {
   struct vg_dual_quality q = dual_of(m);
@@ -188,6 +247,7 @@ static void check(const struct vg_mesh *m)
   assert_int_equal(q.n_opposed, n_opposed);
   near_to(q.face_min, least, 1e-5);
   near_to(q.point_min, least_point, 1e-5);
+  near_to(q.volume_ratio_max / volume_ratio(m), 1, 1e-5);
   near_to(q.below[2], 100. * (double)n_below / (double)m->n_point, 1e-9);
 }
 

@@ -39,6 +39,11 @@ static void figures(struct page *p, const struct vg_solver_quality *q)
 
 static void dual(struct page *p, const struct vg_dual_quality *q)
 {
+  static const char *const name[VG_WORST_DUAL_LISTS] = {
+    "Orthogonality of points", "Orthogonality of dual faces",
+    "Ratio of sub-volumes at points"
+  };
+
   vg_page_markup(p, "<p>Orthogonality of the median dual, for solvers with "
                     "unknowns in the points (SU2, FUN3D): 90&deg; minus the "
                     "angle between an edge and the area vector of its dual "
@@ -48,10 +53,9 @@ static void dual(struct page *p, const struct vg_dual_quality *q)
                     "<th scope=\"col\">Where</th>"
                     "<th scope=\"col\">Share</th></tr></thead>\n<tbody>");
   for (int k = 0; k < VG_WORST_DUAL_LISTS; k++) {
-    vg_page_format(p, "<tr><th scope=\"row\">%s</th><td>",
-                   k == VG_WORST_DUAL_POINT ? "Points" : "Dual faces");
+    vg_page_format(p, "<tr><th scope=\"row\">%s</th><td>", name[k]);
     vg_page_fixed(p, q->worst[k][0].value, 2);
-    vg_page_markup(p, "&deg;</td><td>");
+    vg_page_format(p, "%s</td><td>", k == VG_WORST_DUAL_VOLUME ? "" : "&deg;");
     for (int i = 0; i < 3; i++) {
       if (i) vg_page_markup(p, ", ");
       vg_page_real(p, q->worst[k][0].at[i], 6);
@@ -60,7 +64,7 @@ static void dual(struct page *p, const struct vg_dual_quality *q)
     if (k == VG_WORST_DUAL_POINT) {
       vg_page_format(p, "below 1&deg;, 10&deg;, 20&deg;: %.3g, %.3g, %.3g %%",
                      q->below[0], q->below[1], q->below[2]);
-    } else {
+    } else if (k == VG_WORST_DUAL_FACE) {
       vg_page_markup(p, "0&deg; or less: ");
       vg_page_count(p, q->n_opposed);
     }

@@ -148,6 +148,8 @@ void vg_dual_count_point(struct vg_stats *f, const struct vg_dual_point *p)
   f->n.n_dual_point++;
   for (int i = 0; i < 3; i++) f->n.dual_below[i] += angle < limit[i];
   note(&f->places[VG_PLACES_DUAL + VG_WORST_DUAL_POINT], p->node, angle, p->x);
+  note(&f->places[VG_PLACES_DUAL + VG_WORST_DUAL_VOLUME], p->node,
+       -(double)p->range[1] / (double)p->range[0], p->x);
 }
 
 /* --- sweep ---------------------------------------------------------------- */
@@ -168,6 +170,7 @@ struct dual {
   uint32_t *cell;            /* cells at points */
   uint32_t *slot;            /* [n_point] edge to this point, + 1; 0: none */
   struct vg_grid_sum *sum;   /* [n_point] */
+  float (*range)[2];         /* [n_point] as in struct vg_dual_point */
   struct vg_dual_face *edge; /* edges at the present point */
   size_t n_edge, room;
 };
@@ -226,25 +229,39 @@ static void mean_of(const struct vg_mesh *m, const uint32_t *node,
   }
 }
 
-/* The area vector of the part of the dual face of edge j in a cell, whose
- * centre is g, from a to b: the triangles from the middle of the edge to g and
- * to the centres of the two faces, which together are half of one product. */
-static void area_in(const struct dual *d, int kind, const uint32_t *node, int j,
-                    const double g[3], double out[3])
+/* The part of the dual face of edge j in a cell with the centre g: the
+ * triangles from the middle of the edge to g and to the centres of the two
+ * faces. Out: its area vector, from a to b, and the volumes of the tetrahedra
+ * from the triangles to a, which are also those to b. */
+static void part_in(const struct dual *d, int kind, const uint32_t *node, int j,
+                    const double g[3], double area[3], double volume[2])
 {
   const struct cell_edges *e = &d->edges[kind];
   const double *a = d->m->point[node[e->a[j]]], *b = d->m->point[node[e->b[j]]];
-  double centre[2][3], to[3], across[3];
+  double middle[3], to[3], edge[3], twice[2][3];
 
+  for (int k = 0; k < 3; k++) middle[k] = 0.5 * (a[k] + b[k]);
+  vg_sub(g, middle, to);
+  vg_sub(b, a, edge);
   for (int i = 0; i < 2; i++) {
     int face = e->face[j][i];
+    double centre[3];
 
     mean_of(d->m, node, vg_cell_faces[kind].node[face], width_of(kind, face),
-            centre[i]);
+            centre);
+    vg_sub(centre, middle, centre);
+    vg_cross(to, centre, twice[i]);
+    volume[i] = fabs(vg_dot(edge, twice[i])) / 12;
   }
-  for (int k = 0; k < 3; k++) to[k] = 0.5 * (g[k] - 0.5 * (a[k] + b[k]));
-  vg_sub(centre[0], centre[1], across);
-  vg_cross(to, across, out);
+  for (int k = 0; k < 3; k++) area[k] = 0.5 * (twice[0][k] - twice[1][k]);
+}
+
+static void widen(float range[2], double volume)
+{
+  float v = (float)volume;
+
+  if (v < range[0]) range[0] = v;
+  if (v > range[1]) range[1] = v;
 }
 
 /* The edge from v to w. */
@@ -269,7 +286,7 @@ static vg_status add_cell(struct dual *d, uint32_t v, size_t cell,
   int kind;
   const uint32_t *node = nodes_of(d->m, cell, &kind);
   const struct cell_edges *e = &d->edges[kind];
-  double g[3], area[3];
+  double g[3], area[3], volume[2];
 
   mean_of(d->m, node, NULL, vg_cell_faces[kind].n_node, g);
   for (int j = 0; j < e->n; j++) {
@@ -279,7 +296,11 @@ static vg_status add_cell(struct dual *d, uint32_t v, size_t cell,
     if ((a < b ? a : b) != v) continue;
     to = edge_to(d, v, a < b ? b : a);
     if (!to) return vg_fail_memory(err, "the median dual");
-    area_in(d, kind, node, j, g, area);
+    part_in(d, kind, node, j, g, area, volume);
+    for (int i = 0; i < 2; i++) {
+      widen(d->range[a], volume[i]);
+      widen(d->range[b], volume[i]);
+    }
     for (int k = 0; k < 3 && a != v; k++) area[k] = -area[k];
     vg_grid_sum_add(&to->area, area);
   }
@@ -337,6 +358,7 @@ static vg_status measure_points(struct dual *d, struct vg_error *err)
 
     if (d->end[v] == d->end[v + 1]) continue; /* no cells */
     memcpy(p.x, d->m->point[v], sizeof p.x);
+    memcpy(p.range, d->range[v], sizeof p.range);
     if (!s || !s->is_open[v]) {
       vg_dual_count_point(d->f, &p);
       continue;
@@ -356,7 +378,7 @@ static size_t n_corner(const struct vg_mesh *m)
 size_t vg_dual_bytes(const struct vg_mesh *m)
 {
   return n_corner(m) * sizeof(uint32_t) +
-         m->n_point * (2 * sizeof(uint32_t) + sizeof(struct vg_grid_sum));
+         m->n_point * (4 * sizeof(uint32_t) + sizeof(struct vg_grid_sum));
 }
 
 /* Enter the cells at their points, in ascending order. */
@@ -373,8 +395,10 @@ static vg_status enter_cells(struct dual *d, struct vg_error *err)
   d->cell = vg_alloc(n_entry, sizeof *d->cell);
   d->slot = vg_calloc(m->n_point, sizeof *d->slot);
   d->sum = vg_calloc(m->n_point, sizeof *d->sum);
-  if (!d->end || !d->cell || !d->slot || !d->sum)
+  d->range = vg_calloc(m->n_point, sizeof *d->range);
+  if (!d->end || !d->cell || !d->slot || !d->sum || !d->range)
     return vg_fail_memory(err, "the median dual");
+  for (size_t v = 0; v < m->n_point; v++) d->range[v][0] = INFINITY;
   at = d->end + 1; /* at[v] becomes the end of v, the beginning of v + 1 */
   for (int pass = 0; pass < 2; pass++) {
     for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
@@ -412,6 +436,7 @@ done:
   free(d.cell);
   free(d.slot);
   free(d.sum);
+  free(d.range);
   free(d.edge);
   return st;
 }

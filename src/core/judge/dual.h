@@ -37,6 +37,7 @@ struct vg_dual_face {
 /** A control volume, or the part of it in a slice; an item of a rendezvous. */
 struct vg_dual_point {
   uint32_t node, unused;
+  float range[2]; /* least and largest sub-volume; INFINITY, 0: none */
   double x[3];
   struct vg_grid_sum sum; /* of angle times area, and of areas */
 };
@@ -54,7 +55,7 @@ struct vg_dual_shared {
  *                between two open points, and open points, are listed instead
  *                of counted
  *
- * O(n) time. Memory: 4 bytes per corner of a cell and 64 per point.
+ * O(n) time. Memory: 4 bytes per corner of a cell and 72 per point.
  * VG_ERR_MEMORY. */
 vg_status vg_dual_measure(const struct vg_mesh *m,
                           const struct vg_dual_shared *shared,

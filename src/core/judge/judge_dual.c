@@ -2,6 +2,7 @@
 /* Orthogonality of the median dual, in slices. The parts of a dual face between
  * slices meet first. Each complete one is a part of the control volumes of its
  * points, whose parts meet after that. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -52,6 +53,7 @@ static void meet_face(void *context, const unsigned char *item, size_t n,
       return;
     }
     memset(p, 0, sizeof *p);
+    p->range[0] = INFINITY;
     p->node = face.node[k];
     memcpy(p->x, face.x[k], sizeof p->x);
     vg_grid_sum_add(&p->sum, sum);
@@ -65,7 +67,11 @@ static void meet_point(void *context, const unsigned char *item, size_t n,
   const struct vg_dual_point *part = (const void *)item;
   struct vg_dual_point p = part[0];
 
-  for (size_t i = 1; i < n; i++) vg_grid_sum_join(&p.sum, &part[i].sum);
+  for (size_t i = 1; i < n; i++) {
+    vg_grid_sum_join(&p.sum, &part[i].sum);
+    p.range[0] = fminf(p.range[0], part[i].range[0]);
+    p.range[1] = fmaxf(p.range[1], part[i].range[1]);
+  }
   vg_dual_count_point(j->worker[worker].figures[VG_JUDGED_WHOLE], &p);
 }
 

@@ -55,7 +55,7 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
  *
  * has_dual 1: the report of the whole mesh has the figures of
  * vg_mesh_judge_dual, also bit by bit. This takes 112 bytes per dual face and
- * 88 per control volume between slices. A pinched part of the fluid, which
+ * 96 per control volume between slices. A pinched part of the fluid, which
  * slices share at an edge but at none of its faces, counts once per slice.
  *
  * There is an additional call of body (may be NULL) for each

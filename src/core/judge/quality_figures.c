@@ -292,6 +292,9 @@ void vg_stats_report_dual(const struct vg_stats *f, struct vg_dual_quality *q)
     q->n_worst[k] = list[k].n;
     memcpy(q->worst[k], list[k].place, sizeof list[k].place);
   }
+  for (size_t i = 0; i < list[VG_WORST_DUAL_VOLUME].n; i++)
+    q->worst[VG_WORST_DUAL_VOLUME][i].value *= -1;
+  q->volume_ratio_max = q->worst[VG_WORST_DUAL_VOLUME][0].value;
   q->point_min = q->worst[VG_WORST_DUAL_POINT][0].value;
   q->face_min = q->worst[VG_WORST_DUAL_FACE][0].value;
 }

@@ -92,7 +92,8 @@ struct vg_stats {
   struct vg_worst_cell worst[VG_WORST]; /* sorted by angle, then by cell */
   size_t n_worst;
   /* Values: cosine of the angle, negative skewness, orthogonal quality; for the
-   * median dual, orthogonality in degrees. */
+   * median dual, orthogonality in degrees, negative volume
+   * ratio. */
   struct vg_places places[VG_PLACES_LISTS];
 };
 

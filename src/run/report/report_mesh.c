@@ -208,6 +208,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   quality_text(to, r);
   if (r->has_metric) vg_report_metric_text(to, &r->metric);
   if (r->has_solver) vg_report_volumes_text(to, &r->solver);
+  if (r->has_dual) vg_report_dual_text(to, &r->dual);
   flat_text(to, r);
   if (!full) return;
   bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,

@@ -67,7 +67,7 @@ absent_in() {
 absent_in check.json median_dual
 absent_in one/box.report.json '"median_dual": {'
 dual() {
-  sed -n '/"median_dual": {/,/"worst_faces"/p' "$1" | sed 's/^ *//'
+  sed -n '/"median_dual": {/,/"worst_volume_ratio"/p' "$1" | sed 's/^ *//'
 }
 vanguard check -q --json one/box.b8.ugrid --median-dual yes
 exits 0
@@ -83,6 +83,7 @@ dual three/box.report.json >run.txt
 same check.txt run.txt
 vanguard check -q one/box.b8.ugrid --min-dual-orthogonality 0
 exits 0
+says out "orthogonality of the median dual (degrees; 90 is best)"
 says out "Worst orthogonality of faces of the median dual"
 vanguard check -q one/box.b8.ugrid --min-dual-orthogonality 89
 exits 4
