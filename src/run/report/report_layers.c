@@ -205,7 +205,7 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
                   "requested, by cause\n");
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
-    cause_words(to, " thinner: ", w->compressed);
+    if (cause_words(to, " thinner: ", w->compressed) && bare) fprintf(to, ";");
     if (bare)
       fprintf(to,
               " none: %s (first height exceeds layer_end times the edge "
