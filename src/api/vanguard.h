@@ -543,7 +543,7 @@ struct vanguard_wall {
   size_t patch; /* patch index; SIZE_MAX: all walls together */
   size_t n_face, n_point;
   /* % of faces that have all levels which growth law and local size allow, and
-   * % that have at least one level */
+   * at least one; % that have at least one level */
   double full, any;
   double first[3], asked[3]; /* height of the first point; requested height */
   double level[3], total[3], growth[3];
@@ -573,7 +573,8 @@ struct vanguard_wall_points {
   /* Height of the first point, 0: no levels; requested first height. */
   const double *first, *asked;
   const double *total;  /* height of the last point */
-  const double *share;  /* height relative to that of the growth law */
+  const double *share;  /* height relative to that of the growth law; 0 without
+                           levels */
   const double *growth; /* largest ratio of neighbouring layers */
   /* Causes of fewer and of thinner levels; see vanguard_cause. */
   const int32_t *cause, *compressed;

@@ -26,7 +26,7 @@ static const struct {
     " cad_seconds helpers max_cells max_memory write report_html ugrid_tail "
     "solver_parts schedule threads min_full min_any min_height max_first_error "
     "max_top_ratio max_non_orthogonality max_skewness min_face_weight "
-    "min_orthogonal_quality " },
+    "min_orthogonal_quality median_dual min_dual_orthogonality " },
   { "layers", " min_full min_any min_height max_first_error max_top_ratio " },
   { "sources", " bn alpha group " },
   { "sweep", " ranks threads bisections leaf_cells decompose subdomains family "

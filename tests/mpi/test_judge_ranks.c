@@ -18,9 +18,10 @@ static void check(const struct vg_mesh *m, const struct vg_sizing *sizing,
   cut_make(&c, m, n_slice, 0, NULL, 23 + n_slice);
   part = judge_field(&c);
   assert_int_equal(vg_mesh_judge(m, sizing, &want, &err), VG_OK);
+  assert_int_equal(vg_mesh_judge_dual(m, &want, &err), VG_OK);
   cut_deal(&c, vg_comm_rank(job), vg_comm_size(job));
-  assert_int_equal(vg_slices_judge(job, &c.s, 0, sizing, threads, &r, NULL,
-                                   &err),
+  assert_int_equal(vg_slices_judge_with(job, &c.s, 0, sizing, threads, NULL, 1,
+                                        NULL, NULL, &r, NULL, &err),
                    VG_OK);
   assert_same_report(&r, &want);
   if (part.n_tet) {

@@ -269,6 +269,8 @@ static inline void assert_same_report(const struct vg_mesh_report *a,
   assert_memory_equal(&a->metric, &b->metric, sizeof a->metric);
   /* A report on the field alone has none of these. */
   if (a->has_solver && b->has_solver) judge_same_solver(&a->solver, &b->solver);
+  SAME(has_dual);
+  if (a->has_dual) assert_memory_equal(&a->dual, &b->dual, sizeof a->dual);
 #undef SAME
 #undef SAME_LIST
 }

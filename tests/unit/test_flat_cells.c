@@ -207,7 +207,7 @@ static struct vg_mesh_report judged(const struct vg_mesh *m,
   struct cut c;
 
   cut_make(&c, m, n, 0, NULL, 31 + n);
-  if (vg_slices_judge_with(NULL, &c.s, 0, NULL, threads, f, NULL, NULL, &r,
+  if (vg_slices_judge_with(NULL, &c.s, 0, NULL, threads, f, 0, NULL, NULL, &r,
                            NULL, &err) < 0)
     fail_msg("%s", err.text);
   cut_release(&c);

@@ -20,7 +20,8 @@ static void judge_cut(struct cut *c, const struct vg_sizing *sizing,
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_slices_judge(NULL, &c->s, front, sizing, threads, r, field, &err) < 0)
+  if (vg_slices_judge_with(NULL, &c->s, front, sizing, threads, NULL, 1, NULL,
+                           NULL, r, field, &err) < 0)
     fail_msg("%s", err.text);
 }
 
@@ -32,6 +33,8 @@ static void check_cuts(const struct vg_mesh *m, const struct vg_sizing *sizing,
   struct vg_error err = VG_ERROR_INIT;
 
   assert_int_equal(vg_mesh_judge(m, sizing, whole, &err), VG_OK);
+  assert_int_equal(vg_mesh_judge_dual(m, whole, &err), VG_OK);
+  assert_int_equal(whole->has_dual, whole->is_valid);
   for (size_t i = 0; i < sizeof n_slice / sizeof *n_slice; i++) {
     struct cut c;
 
@@ -92,6 +95,7 @@ static void check_field(const struct vg_mesh *m, const struct vg_sizing *sizing)
   cut_make(&c, m, 11, 0, NULL, 3);
   part = judge_field(&c);
   assert_int_equal(vg_mesh_judge(m, NULL, &want, &err), VG_OK);
+  assert_int_equal(vg_mesh_judge_dual(m, &want, &err), VG_OK);
   assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
   judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
   assert_same_report(&whole, &want);
@@ -355,12 +359,12 @@ static void every_slice_is_shown(void **state)
   (void)state;
   assert_non_null(n);
   cut_make(&c, &m, 6, 0, NULL, 5);
-  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL,
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL, 0,
                                         count_cells, n, &r, NULL, &err),
                    VG_OK);
   assert_true(r.is_valid);
   for (size_t i = 0; i < m.n_tet; i++) assert_int_equal(n[i], 1);
-  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL,
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL, 0,
                                         count_cells, n, &r, NULL, &err),
                    VG_ERR_IO);
   assert_string_equal(err.text, "no more room");

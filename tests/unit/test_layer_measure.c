@@ -281,6 +281,41 @@ static void statistics_by_patch(void **state)
   vg_wall_fields_release(&w);
 }
 
+/* Columns for which the local size requests no level: their faces have no
+ * layers and are not full. */
+static void faces_without_a_request_are_not_full(void **state)
+{
+  struct plate *p = *state;
+  struct vg_patch_layers *list = NULL, all;
+  struct vg_wall_fields w;
+  size_t n = 0, n_bare = 0;
+
+  for (size_t i = 0; i < p->c.n_column; i++) {
+    struct vg_column *c = &p->c.column[i];
+
+    if (i < p->c.n_column / 2) c->n = c->n_fit = c->n_wanted = 0;
+  }
+  for (size_t f = 0; f < p->c.n_face; f++)
+    n_bare += p->c.face[f][0] < p->c.n_column / 2 ||
+              p->c.face[f][1] < p->c.n_column / 2 ||
+              p->c.face[f][2] < p->c.n_column / 2;
+  w = fields(p);
+  assert_true(w.share[0] == 0 && w.share[w.n - 1] == 1);
+  assert_int_equal(vg_layers_patches(&p->m, &p->c, &w, 0, 0, &n, &list, &all,
+                                     NULL),
+                   VG_OK);
+  assert_true(n_bare > 0 && n_bare < all.n_face);
+  assert_int_equal(all.n_bare, n_bare);
+  assert_int_equal(list[0].n_bare + list[1].n_bare, n_bare);
+  assert_true(
+    close_to(all.full, 100 * (1 - (double)n_bare / (double)all.n_face)));
+  assert_true(all.full == all.any && all.uncompressed == all.full);
+  assert_true(all.share_mean < 0.6 && all.share_low == 0);
+  assert_int_equal(all.cause[VG_CAUSE_SIZE], all.n_face);
+  free(list);
+  vg_wall_fields_release(&w);
+}
+
 static void straight_columns_are_valid(void **state)
 {
   const struct plate *p = *state;
@@ -547,6 +582,7 @@ int main(void)
     ON_PLATE(the_first_height_in_a_corner),
     ON_PLATE(a_point_reports_its_worst_column),
     ON_PLATE(statistics_by_patch),
+    ON_PLATE(faces_without_a_request_are_not_full),
     ON_PLATE(straight_columns_are_valid),
     ON_PLATE(a_missing_level_makes_pyramids),
     ON_PLATE(crossing_columns_are_found),

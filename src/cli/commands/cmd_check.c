@@ -98,6 +98,8 @@ static vg_status judge(const struct arguments *a, struct vg_problem *p,
     st = vg_mesh_judge(m, sizing, r, err);
   }
   vg_sizing_free(sizing);
+  if (st >= 0 && vg_wants_median_dual(&p->asked))
+    st = vg_mesh_judge_dual(m, r, err);
   return st;
 }
 

@@ -76,6 +76,10 @@ static void row(struct page *p, const struct vg_patch_layers *w)
   vg_page_markup(p, "<td class=\"words\">");
   causes(p, "fewer:", w->cause);
   causes(p, "thinner:", w->compressed);
+  if (w->n_bare) {
+    vg_page_markup(p, "none (first height too large): ");
+    vg_page_count(p, w->n_bare);
+  }
   vg_page_markup(p, "</td></tr>\n");
 }
 
@@ -108,7 +112,9 @@ void vg_html_layers(struct page *p)
   vg_page_markup(
     p,
     "</tbody></table></div>\n<p class=\"note\">Full layers: all "
-    "layers that the growth law and the local edge length require. Heights are "
+    "layers that the growth law and the local edge length require, and at "
+    "least one. Faces with none have a first height above <code>layer_end"
+    "</code> times the local edge length; they are not full. Heights are "
     "in the length unit of the surface and measured on the mesh points. Volume "
     "ratio: 95th percentile of the ratio between the cells on either side of "
     "the top of the layers.</p>\n<dl class=\"causes\">");

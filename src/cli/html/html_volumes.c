@@ -37,6 +37,42 @@ static void figures(struct page *p, const struct vg_solver_quality *q)
   vg_page_markup(p, "</tbody></table></div>\n");
 }
 
+static void dual(struct page *p, const struct vg_dual_quality *q)
+{
+  static const char *const name[VG_WORST_DUAL_LISTS] = {
+    "Orthogonality of points", "Orthogonality of dual faces",
+    "Ratio of sub-volumes at points"
+  };
+
+  vg_page_markup(p, "<p>Orthogonality of the median dual, for solvers with "
+                    "unknowns in the points (SU2, FUN3D): 90&deg; minus the "
+                    "angle between an edge and the area vector of its dual "
+                    "face; at a point, the mean weighted by area. 90&deg; is "
+                    "best.</p>\n<div class=\"wide\"><table>\n<thead><tr>"
+                    "<th scope=\"col\"></th><th scope=\"col\">Worst</th>"
+                    "<th scope=\"col\">Where</th>"
+                    "<th scope=\"col\">Share</th></tr></thead>\n<tbody>");
+  for (int k = 0; k < VG_WORST_DUAL_LISTS; k++) {
+    vg_page_format(p, "<tr><th scope=\"row\">%s</th><td>", name[k]);
+    vg_page_fixed(p, q->worst[k][0].value, 2);
+    vg_page_format(p, "%s</td><td>", k == VG_WORST_DUAL_VOLUME ? "" : "&deg;");
+    for (int i = 0; i < 3; i++) {
+      if (i) vg_page_markup(p, ", ");
+      vg_page_real(p, q->worst[k][0].at[i], 6);
+    }
+    vg_page_markup(p, "</td><td>");
+    if (k == VG_WORST_DUAL_POINT) {
+      vg_page_format(p, "below 1&deg;, 10&deg;, 20&deg;: %.3g, %.3g, %.3g %%",
+                     q->below[0], q->below[1], q->below[2]);
+    } else if (k == VG_WORST_DUAL_FACE) {
+      vg_page_markup(p, "0&deg; or less: ");
+      vg_page_count(p, q->n_opposed);
+    }
+    vg_page_markup(p, "</td></tr>\n");
+  }
+  vg_page_markup(p, "</tbody></table></div>\n");
+}
+
 static void places(struct page *p, const struct vg_solver_quality *q, int list,
                    const char *name, const char *unit)
 {
@@ -108,6 +144,7 @@ void vg_html_volumes(struct page *p)
                     "by OpenFOAM, orthogonal quality as defined by Fluent."
                     "</p>\n");
   figures(p, &r->solver);
+  if (r->has_dual) dual(p, &r->dual);
   vg_page_markup(p, "<div class=\"charts\">\n");
   vg_html_bars(p, &angle,
                vg_page_json(p,

@@ -440,6 +440,7 @@ vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err)
 
   VG_TRY(meet_places(j, err)); /* first: meeting faces adds edges */
   VG_TRY(vg_judge_solver_match(j, err));
+  if (j->has_dual) VG_TRY(vg_judge_dual_match(j, err));
   VG_TRY(meet_faces(j, err));
   if (j->sizing) VG_TRY(meet_edges(j, err));
 done:

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/judge/dual.h"
 #include "core/judge/judge_slices_parts.h"
 
 _Static_assert((int)VG_SLICE_HEX == VG_CELL_HEX &&
@@ -232,6 +233,9 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
                         &n_component, err));
   VG_TRY(vg_judge_solver_slice(j, (int)(k->w - j->worker), s, solver,
                                &k->unpaired, err));
+  if (j->has_dual)
+    VG_TRY(vg_judge_dual_slice(j, (int)(k->w - j->worker), s, &k->view, k->f,
+                               &k->unpaired, err));
   k->first_component = (uint32_t)atomic_fetch_add(&j->n_here, n_component);
   if (k->is_field) k->w->n_field_component += n_component;
   VG_TRY(judge_sizes(k, err));
@@ -249,7 +253,8 @@ static void note_size(const struct work *k)
   const struct vg_slice *s = k->slice;
   size_t n = s->n_point * (sizeof *s->x + sizeof *s->id) +
              s->n_own * sizeof *s->own + k->n_cell * sizeof(float) +
-             vg_solver_bytes(&k->view);
+             vg_solver_bytes(&k->view) +
+             (k->j->has_dual ? vg_dual_bytes(&k->view) : 0);
 
   for (size_t kind = 0; kind < VG_SLICE_KINDS; kind++)
     n += s->n_cell[kind] * vg_slice_width[kind] * sizeof(uint32_t);

@@ -110,6 +110,7 @@ static void release(struct vg_slices_judgement *j)
     }
   }
   vg_judge_solver_release(j);
+  vg_judge_dual_release(j);
   free(j->worker);
   for (int q = 0; q < VG_JUDGED; q++) free(j->used[q]);
   free(j->place);
@@ -122,7 +123,7 @@ void vg_judge_note_bytes(struct vg_slices_judgement *j, size_t more)
   size_t n = more + j->n_place * sizeof *j->place +
              (size_t)j->n_judged * j->n_word * sizeof **j->used +
              j->waiting.most * sizeof(struct vg_face_item) +
-             vg_judge_solver_bytes(j);
+             vg_judge_solver_bytes(j) + vg_judge_dual_bytes(j);
 
   for (int i = 0; i < j->n_worker; i++) {
     const struct vg_judge_worker *w = &j->worker[i];
@@ -412,7 +413,8 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
   for (int q = 0; q < j->n_judged; q++)
     vg_stats_report(j->worker[0].figures[q], n_component[q],
                     (j->edges_of == q ? has : 0) |
-                      (q == VG_JUDGED_WHOLE ? VG_HAS_SOLVER : 0),
+                      (q == VG_JUDGED_WHOLE ? VG_HAS_SOLVER : 0) |
+                      (q == VG_JUDGED_WHOLE && j->has_dual ? VG_HAS_DUAL : 0),
                     &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
   r[VG_JUDGED_WHOLE].bytes_shared = j->bytes;
@@ -543,6 +545,7 @@ static vg_status judge_again(struct vg_slices_judgement *j,
                                        .sizing = j->sizing,
                                        .threads = j->threads,
                                        .n_judged = j->n_judged,
+                                       .has_dual = j->has_dual,
                                        .in_metric = j->in_metric,
                                        .edges_of = j->edges_of,
                                        .flat = j->flat };
@@ -565,17 +568,15 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           int threads, struct vg_mesh_report *whole,
                           struct vg_mesh_report *field, struct vg_error *err)
 {
-  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL, NULL,
-                              NULL, whole, field, err);
+  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL, 0,
+                              NULL, NULL, whole, field, err);
 }
 
-vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
-                               uint64_t front_faces,
-                               const struct vg_sizing *sizing, int threads,
-                               const struct vg_flat *flat, vg_slice_body body,
-                               void *context, struct vg_mesh_report *whole,
-                               struct vg_mesh_report *field,
-                               struct vg_error *err)
+vg_status vg_slices_judge_with(
+  struct vg_comm *comm, const struct vg_slices *s, uint64_t front_faces,
+  const struct vg_sizing *sizing, int threads, const struct vg_flat *flat,
+  int has_dual, vg_slice_body body, void *context, struct vg_mesh_report *whole,
+  struct vg_mesh_report *field, struct vg_error *err)
 {
   assert(s->boundary && whole);
   assert(threads >= 0);
@@ -585,6 +586,7 @@ vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
     .sizing = sizing,
     .threads = threads,
     .flat = flat,
+    .has_dual = has_dual,
     .body = body,
     .context = context,
     .n_judged = field ? VG_JUDGED : 1,

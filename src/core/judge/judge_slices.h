@@ -53,17 +53,20 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
  * Points owned by other slices, and all points of separators and repairs, count
  * as interface points unless they are on the boundary of `flat`.
  *
+ * has_dual 1: the report of the whole mesh has the figures of
+ * vg_mesh_judge_dual, also bit by bit. This takes 112 bytes per dual face and
+ * 96 per control volume between slices. A pinched part of the fluid, which
+ * slices share at an edge but at none of its faces, counts once per slice.
+ *
  * There is an additional call of body (may be NULL) for each
  * slice of this rank while the slice is in memory, so that a valid mesh needs
  * to provide each slice only once. body is called as in vg_slices_each; slices
  * with bad indices or coordinates are skipped. A failure of body fails the
  * call, on all ranks. */
-vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
-                               uint64_t front_faces,
-                               const struct vg_sizing *sizing, int threads,
-                               const struct vg_flat *flat, vg_slice_body body,
-                               void *context, struct vg_mesh_report *whole,
-                               struct vg_mesh_report *field,
-                               struct vg_error *err);
+vg_status vg_slices_judge_with(
+  struct vg_comm *comm, const struct vg_slices *s, uint64_t front_faces,
+  const struct vg_sizing *sizing, int threads, const struct vg_flat *flat,
+  int has_dual, vg_slice_body body, void *context, struct vg_mesh_report *whole,
+  struct vg_mesh_report *field, struct vg_error *err);
 
 #endif

@@ -64,6 +64,7 @@ struct vg_judge_worker {
    * sides of faces between slices, and cells that have several of them. */
   struct vg_solver_sweep solver;
   struct vg_item_blocks side, rest;
+  struct vg_item_blocks dual_face, dual_point; /* parts of the median dual */
   struct vg_items crowd;   /* keys that several points have */
   struct vg_items suspect; /* keys of faces that do not join two sides */
   /* Figures of slices: first of layers and of the field; later of the whole
@@ -85,6 +86,7 @@ struct vg_slices_judgement {
   const struct vg_slices *s;
   const struct vg_sizing *sizing;
   int threads, n_judged;      /* n_judged 1: no report of the field */
+  int has_dual;               /* 1: measure the median dual */
   int in_metric;              /* 1: measure lengths and cells in the metric */
   int edges_of;               /* VG_JUDGED_...: whole mesh or field for the edge
                                  statistics and flat cells */
@@ -153,6 +155,24 @@ vg_status vg_judge_solver_slice(struct vg_slices_judgement *j, int worker,
 /** Match the faces between slices. Collective. */
 vg_status vg_judge_solver_match(struct vg_slices_judgement *j,
                                 struct vg_error *err);
+
+/** Is a face of a slice on the boundary of the mesh? */
+int vg_judge_on_boundary(const struct vg_slices_judgement *j,
+                         const struct vg_slice *s, const uint32_t local[4]);
+
+/** judge_dual.c: measure the median dual of a slice, view, and keep its parts
+ * of dual faces and control volumes between slices. */
+vg_status vg_judge_dual_slice(struct vg_slices_judgement *j, int worker,
+                              const struct vg_slice *s,
+                              const struct vg_mesh *view, struct vg_stats *f,
+                              const struct vg_unpaired *unpaired,
+                              struct vg_error *err);
+
+/** Match the parts of dual faces, then those of control volumes. Collective. */
+vg_status vg_judge_dual_match(struct vg_slices_judgement *j,
+                              struct vg_error *err);
+void vg_judge_dual_release(struct vg_slices_judgement *j);
+size_t vg_judge_dual_bytes(const struct vg_slices_judgement *j);
 
 /** Unite the worst places of all ranks. Collective. */
 vg_status vg_judge_solver_gather(struct vg_comm *comm, struct vg_stats *f,

@@ -173,6 +173,15 @@ static void global_key(const struct vg_slice *s, const uint32_t local[4],
   memcpy(node, f.node, sizeof f.node);
 }
 
+int vg_judge_on_boundary(const struct vg_slices_judgement *j,
+                         const struct vg_slice *s, const uint32_t local[4])
+{
+  uint32_t node[4];
+
+  global_key(s, local, node);
+  return on_boundary(j, node);
+}
+
 vg_status vg_judge_solver_slice(struct vg_slices_judgement *j, int worker,
                                 const struct vg_slice *s,
                                 struct vg_solver_sweep *sweep,
@@ -254,7 +263,7 @@ vg_status vg_judge_solver_gather(struct vg_comm *comm, struct vg_stats *f,
                                  struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(comm);
-  struct vg_places own[VG_WORST_LISTS];
+  struct vg_places own[VG_PLACES_LISTS];
   struct vg_bytes mine = { sizeof own, (unsigned char *)own };
   struct vg_bytes *all = vg_calloc(size, sizeof *all);
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the worst places");
@@ -264,11 +273,11 @@ vg_status vg_judge_solver_gather(struct vg_comm *comm, struct vg_stats *f,
   VG_TRY(vg_comm_allgather(comm, &mine, all, err));
   memset(f->places, 0, sizeof f->places);
   for (size_t r = 0; r < size; r++) {
-    struct vg_places list[VG_WORST_LISTS];
+    struct vg_places list[VG_PLACES_LISTS];
 
     assert(all[r].n == sizeof list);
     memcpy(list, all[r].data, sizeof list);
-    for (int k = 0; k < VG_WORST_LISTS; k++)
+    for (int k = 0; k < VG_PLACES_LISTS; k++)
       for (size_t i = 0; i < list[k].n; i++)
         vg_places_add(&f->places[k], &list[k].place[i]);
   }

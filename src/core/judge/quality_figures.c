@@ -89,7 +89,7 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
   for (int k = 0; k < VG_MOST_N; k++)
     if (more->most[k] > f->most[k]) f->most[k] = more->most[k];
   for (size_t i = 0; i < more->n_worst; i++) vg_stats_worst(f, &more->worst[i]);
-  for (int k = 0; k < VG_WORST_LISTS; k++)
+  for (int k = 0; k < VG_PLACES_LISTS; k++)
     for (size_t i = 0; i < more->places[k].n; i++)
       vg_places_add(&f->places[k], &more->places[k].place[i]);
 }
@@ -276,6 +276,29 @@ void vg_stats_report_solver(const struct vg_stats *f,
   report_places(f, q);
 }
 
+void vg_stats_report_dual(const struct vg_stats *f, struct vg_dual_quality *q)
+{
+  const struct vg_counts *n = &f->n;
+  const struct vg_places *list = &f->places[VG_PLACES_DUAL];
+
+  q->n_face = (size_t)n->n_dual_face;
+  q->n_point = (size_t)n->n_dual_point;
+  q->n_opposed = (size_t)n->n_dual_opposed;
+  for (int i = 0; i < 3; i++)
+    q->below[i] = n->n_dual_point
+                  ? 100 * (double)n->dual_below[i] / (double)n->n_dual_point
+                  : 0;
+  for (int k = 0; k < VG_WORST_DUAL_LISTS; k++) {
+    q->n_worst[k] = list[k].n;
+    memcpy(q->worst[k], list[k].place, sizeof list[k].place);
+  }
+  for (size_t i = 0; i < list[VG_WORST_DUAL_VOLUME].n; i++)
+    q->worst[VG_WORST_DUAL_VOLUME][i].value *= -1;
+  q->volume_ratio_max = q->worst[VG_WORST_DUAL_VOLUME][0].value;
+  q->point_min = q->worst[VG_WORST_DUAL_POINT][0].value;
+  q->face_min = q->worst[VG_WORST_DUAL_FACE][0].value;
+}
+
 void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
                      struct vg_mesh_report *r)
 {
@@ -289,6 +312,8 @@ void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
   if (r->has_metric) vg_stats_report_metric(f, &r->metric);
   r->has_solver = has & VG_HAS_SOLVER && f->n.n_cell;
   if (r->has_solver) vg_stats_report_solver(f, &r->solver);
+  r->has_dual = has & VG_HAS_DUAL && f->n.n_dual_point;
+  if (r->has_dual) vg_stats_report_dual(f, &r->dual);
   r->n_component = n_component;
 }
 
@@ -303,7 +328,8 @@ void vg_report_conclude(struct vg_mesh_report *r)
                 !r->not_positive && !r->open_face && !r->crowded_face &&
                 !r->same_side_face && !r->orphan_boundary &&
                 !r->outward_boundary && r->volume_error < VOLUME_TOLERANCE;
-  if (r->is_valid || !r->has_solver) return;
-  r->has_solver = 0;
+  if (r->is_valid) return;
+  r->has_solver = r->has_dual = 0;
   memset(&r->solver, 0, sizeof r->solver);
+  memset(&r->dual, 0, sizeof r->dual);
 }

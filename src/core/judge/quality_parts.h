@@ -51,6 +51,8 @@ struct vg_counts {
   uint64_t quality[VG_HIST_UNIT];
   uint64_t sum_cosine,
     sum_quality; /* two's complement, units of 1 / VG_FIXED */
+  /* Median dual. */
+  uint64_t n_dual_face, n_dual_point, n_dual_opposed, dual_below[3];
 };
 
 /* Cosines are added up as integers of this unit: 2^33 of them fit. */
@@ -72,6 +74,10 @@ enum {
   VG_MOST_N
 };
 
+/* Lists of the worst places of the median dual follow those of solvers. */
+#define VG_PLACES_DUAL VG_WORST_LISTS
+#define VG_PLACES_LISTS (VG_WORST_LISTS + (int)VG_WORST_DUAL_LISTS)
+
 /** The worst places of one kind: sorted by value, the lowest first, then by
  * cell and position. */
 struct vg_places {
@@ -85,8 +91,10 @@ struct vg_stats {
   double most[VG_MOST_N];
   struct vg_worst_cell worst[VG_WORST]; /* sorted by angle, then by cell */
   size_t n_worst;
-  /* Values: cosine of the angle, negative skewness, orthogonal quality. */
-  struct vg_places places[VG_WORST_LISTS];
+  /* Values: cosine of the angle, negative skewness, orthogonal quality; for the
+   * median dual, orthogonality in degrees, negative volume
+   * ratio. */
+  struct vg_places places[VG_PLACES_LISTS];
 };
 
 /** Figures of an empty mesh; NULL if memory is refused. Release with free(). */
@@ -136,7 +144,8 @@ enum {
   VG_HAS_SIZING = 1, /* edges, compared with the sizing field */
   VG_HAS_METRIC = 2, /* figures in the metric */
   VG_HAS_FLAT = 4,   /* causes of flat cells */
-  VG_HAS_SOLVER = 8  /* quality in the terms of solvers */
+  VG_HAS_SOLVER = 8, /* quality in the terms of solvers */
+  VG_HAS_DUAL = 16   /* orthogonality of the median dual */
 };
 
 /** Fill the report, except for `enclosed` and the members that depend on it.
@@ -153,8 +162,12 @@ void vg_stats_report_metric(const struct vg_stats *f,
 void vg_stats_report_solver(const struct vg_stats *f,
                             struct vg_solver_quality *q);
 
+/** Fill the figures of the median dual. */
+void vg_stats_report_dual(const struct vg_stats *f, struct vg_dual_quality *q);
+
 /** Compute the volume error from r->volume and r->enclosed, and whether the
- * mesh is valid. The figures in the terms of solvers are only kept if it is. */
+ * mesh is valid. The figures in the terms of solvers and those of the median
+ * dual are only kept if it is. */
 void vg_report_conclude(struct vg_mesh_report *r);
 
 /** Faces of one kind of cell, with normals out of the cell. The first n_tri of

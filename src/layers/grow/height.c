@@ -215,7 +215,7 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
     c->bent = SIZE_MAX;
     c->n_wanted = (uint16_t)levels(w, (uint32_t)i, &r, law);
     w->by_size[i] = !w->o->patch[p].n_exact &&
-                    c->n_wanted != w->o->patch[p].n_max;
+                    (!c->n_wanted || c->n_wanted != w->o->patch[p].n_max);
   }
 }
 

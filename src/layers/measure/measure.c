@@ -136,8 +136,7 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
   if (col->n < w->level[i]) w->level[i] = col->n;
   if (col->n_fit < w->wanted[i]) w->wanted[i] = col->n_fit;
   if (!col->n) {
-    w->total[i] = 0;
-    if (col->n_wanted) w->share[i] = 0;
+    w->total[i] = w->share[i] = 0;
     return;
   }
   vg_column_points(j->columns, j->surface, c, d, x);

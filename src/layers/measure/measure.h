@@ -32,8 +32,7 @@ struct vg_wall_fields {
                               nearer. */
   double *share;           /* Height of the top relative to that of all levels
                               at the growth law, along the column; least over
-                              the columns. 1 where the law requests no
-                              levels. */
+                              the columns. 0 for a column without levels. */
   double *growth;          /* Largest ratio of neighbouring layers; 1 for a
                               single layer, 0 for none. */
   int32_t *cause, *compressed; /* Cause of the worst column, and cause of
@@ -61,11 +60,10 @@ struct vg_range {
 struct vg_patch_layers {
   uint32_t patch;
   size_t n_face, n_point;
-  size_t n_bare;       /* Faces for which growth law and local size request no
-                          level, which count as complete. */
-  double full;         /* % of faces all of whose columns have the levels that
-                          growth law and local size request. This and all other
-                          shares are 0 if no face has a level. */
+  size_t n_bare;       /* Faces without layers because growth law and local size
+                          request no level at a corner. */
+  double full;         /* % of faces with layers, all of whose columns have the
+                          levels that growth law and local size request. */
   double uncompressed; /* % of faces that are full at the growth law. */
   double any;          /* % of faces with at least one level at all three
                           corners. */

@@ -114,8 +114,9 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
   if (any && j->reynolds > 0)
     note(&t->p.y_plus, vg_y_plus(first / 3, j->reynolds, j->length), t->n_any);
   t->n_any += any;
-  t->n_full += full;
   t->p.n_bare += full && !any;
+  full &= any;
+  t->n_full += full;
   t->n_uncompressed += full && loose;
   add_share(j, f, t);
   t->p.n_face++;
@@ -140,9 +141,6 @@ static void finish(struct tally *t)
   finish_range(&p->growth, p->n_point);
   finish_range(&p->y_plus, t->n_any);
   finish_share(t);
-  if (!t->n_any)
-    p->full = p->uncompressed = p->share_mean = p->share_low = p->share_area =
-      0;
 }
 
 /* Sorts the faces of triangles by patch; *n out: number of patches with

@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Limits of the settings on the quality of the mesh. */
 #include <assert.h>
+#include <math.h>
 
 #include "run/report/report.h"
 #include "run/report/report_parts.h"
+
+int vg_wants_median_dual(const struct vg_settings *s)
+{
+  return s->median_dual || !isnan(s->min_dual_orthogonality);
+}
 
 int vg_mesh_limits_missed(const struct vg_settings *s,
                           const struct vg_mesh_report *r,
@@ -21,6 +27,9 @@ int vg_mesh_limits_missed(const struct vg_settings *s,
     { { "min_face_weight", "", s->min_face_weight, q->weight_min }, 1 },
     { { "min_orthogonal_quality", "", s->min_orthogonal_quality,
         q->quality_min },
+      1 },
+    { { "min_dual_orthogonality", " degrees",
+        r->has_dual ? s->min_dual_orthogonality : NAN, r->dual.point_min },
       1 },
   };
   int n = 0;

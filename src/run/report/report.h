@@ -95,7 +95,10 @@ struct vg_mesh_limit {
   const char *name, *unit; /* of the setting; static strings */
   double wanted, got;
 };
-#define VG_MESH_LIMITS 4
+#define VG_MESH_LIMITS 5
+
+/** Do the settings request the median dual, or limit it? */
+int vg_wants_median_dual(const struct vg_settings *s);
 
 /** The limits that a whole mesh does not meet; returns their number. */
 int vg_mesh_limits_missed(const struct vg_settings *s,

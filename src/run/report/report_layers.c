@@ -45,8 +45,8 @@ static void row_cover(FILE *to, const struct vg_mesh *surface,
 /* The most frequent cause of fewer or thinner layers. */
 static const char *main_cause(const struct vg_patch_layers *w)
 {
-  int most = VG_CAUSE_NONE;
-  size_t n = 0;
+  int most = VG_CAUSE_SIZE;
+  size_t n = w->n_bare;
 
   for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
     if (w->cause[c] + w->compressed[c] > n) {
@@ -205,7 +205,7 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
                   "requested, by cause\n");
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
-    cause_words(to, " thinner: ", w->compressed);
+    if (cause_words(to, " thinner: ", w->compressed) && bare) fprintf(to, ";");
     if (bare)
       fprintf(to,
               " none: %s (first height exceeds layer_end times the edge "
@@ -357,6 +357,7 @@ static json_t *wall_json(const struct vg_patch_layers *w)
 
   json_object_set_new(o, "faces", vg_json_count(w->n_face));
   json_object_set_new(o, "points", vg_json_count(w->n_point));
+  json_object_set_new(o, "bare_faces", vg_json_count(w->n_bare));
   json_object_set_new(o, "percent_full", vg_json_real(w->full));
   json_object_set_new(o, "percent_uncompressed", vg_json_real(w->uncompressed));
   json_object_set_new(o, "percent_any", vg_json_real(w->any));

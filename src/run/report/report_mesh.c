@@ -175,6 +175,7 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
           "%.2f, largest %.1f\n",
           r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
   if (r->has_solver) vg_report_volumes_text(to, &r->solver);
+  if (r->has_dual) vg_report_dual_text(to, &r->dual);
 }
 
 static void flat_text(FILE *to, const struct vg_mesh_report *r)
@@ -207,6 +208,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   quality_text(to, r);
   if (r->has_metric) vg_report_metric_text(to, &r->metric);
   if (r->has_solver) vg_report_volumes_text(to, &r->solver);
+  if (r->has_dual) vg_report_dual_text(to, &r->dual);
   flat_text(to, r);
   if (!full) return;
   bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,
@@ -219,6 +221,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
     bars(to, "Edge length / target edge length", r->hist_edge, VG_HIST_UNIT,
          0.1, 1);
   if (r->has_solver) vg_report_volumes_bars(to, &r->solver);
+  if (r->has_dual) vg_report_dual_places(to, &r->dual);
   if (r->n_worst) fprintf(to, "\n  Worst cells\n");
   for (size_t i = 0; i < r->n_worst; i++)
     fprintf(to, "    cell %zu: smallest angle %.2f degrees at (%g, %g, %g)\n",
@@ -372,6 +375,8 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
   if (r->has_solver)
     json_object_set_new(o, "solver_quality",
                         vg_report_volumes_json(&r->solver));
+  if (r->has_dual)
+    json_object_set_new(o, "median_dual", vg_report_dual_json(&r->dual));
   json_object_set_new(o, "worst", worst_json(r));
   if (r->has_flat) json_object_set_new(o, "flat_cells", flat_json(r, patches));
   return o;

@@ -58,4 +58,9 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q);
 void vg_report_volumes_bars(FILE *to, const struct vg_solver_quality *q);
 json_t *vg_report_volumes_json(const struct vg_solver_quality *q);
 
+/** report_dual.c: orthogonality of the median dual; worst places. */
+void vg_report_dual_text(FILE *to, const struct vg_dual_quality *q);
+void vg_report_dual_places(FILE *to, const struct vg_dual_quality *q);
+json_t *vg_report_dual_json(const struct vg_dual_quality *q);
+
 #endif

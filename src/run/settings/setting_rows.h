@@ -394,3 +394,11 @@ VG_ROW(REAL, plain, min_orthogonal_quality, "min_orthogonal_quality", NAN,
   .topic = VG_TOPIC_LIMITS,
   LIMIT(0, 1, "", "Smallest orthogonal quality of a cell of the mesh, as "
   "defined by Fluent"))
+VG_ROW(FLAG, plain, median_dual, "median_dual", 0,
+  .topic = VG_TOPIC_LIMITS, .keeps_mesh = 1,
+  .unit = "", .help = "Report the orthogonality of the median dual, for "
+  "solvers with unknowns in the points (SU2, FUN3D)")
+VG_ROW(REAL, plain, min_dual_orthogonality, "min_dual_orthogonality", NAN,
+  .topic = VG_TOPIC_LIMITS,
+  LIMIT(-90, 90, "degrees", "Smallest orthogonality of the median dual at a "
+  "point, as defined by SU2; 90 is best"))

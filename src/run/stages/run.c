@@ -435,7 +435,8 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   if (r->layers) r->memory_of.numbers += vg_layer_slices_bytes(r->layers);
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, flat, put_slice, &put, &r->judge,
+                            r->threads, flat, vg_wants_median_dual(&p->asked),
+                            put_slice, &put, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);

@@ -247,4 +247,6 @@ for limit in min-full min-any min-height max-first-error max-top-ratio; do
   says err ", but the patch has no layers"
 done
 says huge/box.report.json '"percent_full": 0.0'
+grep -q '"bare_faces": [1-9]' huge/box.report.json || fail "no bare faces"
+grep -q '"size": [1-9]' huge/box.report.json || fail "no cause size"
 says huge/box.report.json '"got": null'

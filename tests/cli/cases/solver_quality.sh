@@ -59,3 +59,32 @@ says two/box.report.html "1 limit on the mesh not met"
 same one/box.b8.ugrid two/box.b8.ugrid
 vanguard check -q one/box.b8.ugrid --min-orthogonal-quality 2
 exits 2
+
+# The median dual: on request, the same from slices and from the file.
+absent_in() {
+  if grep -q "$2" "$1"; then fail "$2 in $1"; fi
+}
+absent_in check.json median_dual
+absent_in one/box.report.json '"median_dual": {'
+dual() {
+  sed -n '/"median_dual": {/,/"worst_volume_ratio"/p' "$1" | sed 's/^ *//'
+}
+vanguard check -q --json one/box.b8.ugrid --median-dual yes
+exits 0
+dual out >check.txt
+vanguard mesh -q -p p/box --walls 5 --first 2e-3 --cells mixed --leaf-cells 1000 \
+  --write b8.ugrid --median-dual yes --out three
+exits 0
+says out "orthogonality of the median dual (degrees; 90 is best)"
+says three/box.report.html "Orthogonality of the median dual"
+same one/box.b8.ugrid three/box.b8.ugrid
+dual three/box.report.json >run.txt
+[ "$(wc -l <run.txt)" -gt 40 ] || fail "no median dual in the report of the run"
+same check.txt run.txt
+vanguard check -q one/box.b8.ugrid --min-dual-orthogonality 0
+exits 0
+says out "orthogonality of the median dual (degrees; 90 is best)"
+says out "Worst orthogonality of faces of the median dual"
+vanguard check -q one/box.b8.ugrid --min-dual-orthogonality 89
+exits 4
+says err "limit not met: mesh: min_dual_orthogonality is 89 degrees, reached "
