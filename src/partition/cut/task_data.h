@@ -12,6 +12,7 @@
 #include "core/front/front.h"
 #include "core/front/region.h"
 #include "core/mesh/packed_cells.h"
+#include "partition/engine/spans.h"
 #include "partition/load/load.h"
 
 /* Global id of a point in a front: the serial of the task that created it, and
@@ -31,7 +32,7 @@ double vg_front_work(const struct vg_front *f);
 
 /** Submesh that a task leaves on its executing rank. */
 struct vg_piece {
-  char path[64];
+  char path[VG_PATH_MAX];
   char kind; /* VG_SPAN_... */
   uint32_t serial;
   size_t n_in, n_point, n_cell;
