@@ -169,7 +169,7 @@ static vg_status make_surface(vanguard_job *job)
                    job->run.size);
   VG_TRY(vg_boundary_shape(&p->read, &o, &job->show, &p->boundary, &job->err));
   VG_TRY(vg_boundary_check(&p->boundary, &job->show, &job->err));
-  vg_boundary_finish_conditions(&p->boundary);
+  VG_TRY(vg_boundary_finish_conditions(&p->boundary, &job->err));
   vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
 done:
   return st;
@@ -197,7 +197,8 @@ static vg_status make_forecast(vanguard_job *job, struct vg_plan *plan)
 {
   vg_status st = vg_plan_make(plan, &job->err);
 
-  if (st >= 0) vg_boundary_finish_conditions(&job->problem.boundary);
+  if (st >= 0)
+    st = vg_boundary_finish_conditions(&job->problem.boundary, &job->err);
   return st;
 }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "cli/plot/timeline.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/stream/stream.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 
 #define SECONDS_MAX 1e9
