@@ -10,6 +10,7 @@
 #include "api/job.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "run/common/text.h"
 #include "run/input/sizes.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
@@ -261,6 +262,7 @@ vg_status vg_job_run(vanguard_job *job, enum vg_job_goal goal,
 
   if (st < 0) return st;
   assert((goal == VG_JOB_FORECAST) == (plan != NULL));
+  vg_print_forget();
   vg_job_begin(job, progress, user);
   before = vg_thread_data();
   st = make(job, goal, plan);

@@ -46,6 +46,18 @@ ENVIRONMENT = {
 }
 
 
+def plain(text):
+    """A report without its numbers, and without what else depends on the
+    moment: the stage with the greatest memory, and free memory that is not
+    known."""
+    text = NUMBER.sub(b"#", text)
+    text = re.sub(rb"(?m)^.*# MB.*\n", b"", text)
+    text = re.sub(rb'("stage": ")[a-z ,]+', rb"\1#", text)
+    text = re.sub(rb'("[a-z_]*(memory|free|available)[a-z_]*": )null',
+                  rb"\1#", text)
+    return re.sub(rb"(?m)^ *note: .*\n", b"", text)
+
+
 class Case:
     """One case: shell lines that prepare its folder, and the line that runs
     with faults. In it, `vg` is the program with the faults."""
@@ -59,8 +71,8 @@ class Case:
 
 
 def read_cases(path):
-    """Blocks separated by blank lines: `name [short] [fails]`, lines that prepare, and
-    the line with faults, which starts with `!`."""
+    """Blocks separated by blank lines: `name [short] [fails]`, lines that
+    prepare, and the line with faults, which starts with `!`."""
     cases = []
     for block in expanded(open(path).read().split("\n\n")):
         lines = [x for x in block.split("\n") if x and not x.startswith("#")]
@@ -97,7 +109,7 @@ def content(path):
     if re.search(r"\.(html|lock|svg)$", path):
         return b"text " + data[-8:].strip()[-1:]
     if re.search(r"\.(json|deck|log|txt|md|csv)$", path):
-        return b"text " + NUMBER.sub(b"#", data)
+        return b"text " + plain(data)
     return hashlib.sha256(data).digest()
 
 
@@ -161,8 +173,7 @@ set -o pipefail
             folder, case.line,
             {**environment, "VG_FAULT_STATE": state,
              "VG_FAULT_DEPTH": str(self.options.depth)}, False)
-        out = re.sub(rb"(?m)^ *note: .*\n", b"", NUMBER.sub(b"#", out))
-        outcome = Outcome(status, out, err, tree(folder),
+        outcome = Outcome(status, plain(out), err, tree(folder),
                           open(state, "rb").read(1) != b"\0")
         shutil.rmtree(run)
         return outcome
@@ -205,21 +216,24 @@ set -o pipefail
         if function in CLEANING:
             for name in [n for n in outcome.files if re.search(r"(^|/)\.", n)]:
                 del outcome.files[name]
+        changed = sorted(
+            n for n in set(outcome.files) | set(want.files)
+            if outcome.files.get(n) != want.files.get(n)
+            and not (n in outcome.files and n in case.varying))
         if outcome.status == want.status:
-            changed = sorted(
-                set(n for n in set(outcome.files) | set(want.files)
-                    if outcome.files.get(n) != want.files.get(n)
-                    and not (n in outcome.files and n in case.varying)))
             if not changed and (outcome.out == want.out or "" in case.varying):
                 return None
             if outcome.status == 0:
                 if changed:
                     return "status 0, and other files: " + ", ".join(changed[:5])
-                return "status 0, and another output"
+                lines = set(want.out.split(b"\n"))
+                new = [x for x in outcome.out.split(b"\n") if x not in lines]
+                return "status 0, and another output: " + b" | ".join(
+                    new[:3]).decode(errors="replace")
         if outcome.status == 0:
             return "status 0 instead of a failure"
         if ("standard output could not be written" in text and
-                outcome.files == want.files):
+                not changed):
             return None
         if not text.strip():
             return f"status {outcome.status} without a message"
@@ -310,7 +324,7 @@ def main():
     parser.add_argument("--vanguard", required=True)
     parser.add_argument("--library", required=True)
     parser.add_argument("--library-program", default="")
-    parser.add_argument("--depth", type=int, default=2)
+    parser.add_argument("--depth", type=int, default=3)
     parser.add_argument("--case", action="append")
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--share", default="1/1")

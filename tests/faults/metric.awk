@@ -3,7 +3,7 @@
 # shorter edges in z.
 BEGIN { print "MeshVersionFormatted 2\nDimension 3\nSolAtVertices" }
 at && n < count {
-  print "0.05 0 0.05 0 0 0.2"
+  print "0.005 0 0.005 0 0 0.02"
   n++
 }
 is_count { count = $1; print count "\n1 3"; at = 1; is_count = 0 }

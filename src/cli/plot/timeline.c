@@ -106,6 +106,7 @@ static void put_string(struct vg_output *out, const char *text)
   json_t *string = vg_text_json(text);
   char *quoted = json_dumps(string, JSON_ENCODE_ANY);
 
+  if (!quoted) vg_print_lose();
   vg_output_text(out, quoted ? quoted : "\"\"");
   free(quoted);
   json_decref(string);

@@ -130,6 +130,11 @@ void vg_print_lose(void)
   is_lost = 1;
 }
 
+void vg_print_forget(void)
+{
+  is_lost = 0;
+}
+
 int vg_print_is_lost(void)
 {
   return is_lost;

@@ -41,6 +41,9 @@ int vg_text_ends(const char *text, const char *suffix);
 void vg_print_lose(void);
 int vg_print_is_lost(void);
 
+/** Called before the next job of a process. */
+void vg_print_forget(void);
+
 /** Formats a count as "12,345,678" in text[32]; returns text. */
 char *vg_text_count(unsigned long long n, char *text);
 

@@ -749,6 +749,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
   vg_status st = VG_OK;
 
   assert(!o->is_guest && o->temp_dir);
+  if (vg_print_is_lost()) st = vg_fail_memory(err, "the report");
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     if (!o->file[i].keep_old) st = add_moves(o, &o->file[i], err);
   if (st >= 0) st = vg_commit_run(&o->commit, err);

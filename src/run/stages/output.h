@@ -124,7 +124,8 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
                          struct vg_error *err);
 
 /** Moves all files into place, or none, and removes the hidden folder. When it
- * returns VG_OK all files are on the disk. On rank 0. */
+ * returns VG_OK all files are on the disk. VG_ERR_MEMORY: a note of the report
+ * was lost (vg_print_is_lost). On rank 0. */
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err);
 
 #endif
