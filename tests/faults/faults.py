@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Injected faults: every call site of the C library fails once.
 
-    faults.py --vanguard PROGRAM --library fault.so [--depth N] [--case NAME]
+    faults.py --vanguard PROGRAM --library fault_calls.so [--depth N] [--case NAME]
               [--share K/N] [--jobs N] [--site HASH] [FOLDER]
 
-A first run of each case records the sites of its calls (fault.c). One run for
+A first run of each case records the sites of its calls (fault_calls.c). One run for
 each site that no earlier case has follows, in which its first call fails, and one in which all later
 calls of the same class fail, too. The outcome must be one of these two:
 
@@ -216,9 +216,11 @@ set -o pipefail
         if function in CLEANING:
             for name in [n for n in outcome.files if re.search(r"(^|/)\.", n)]:
                 del outcome.files[name]
+        # A task that cannot be kept is computed again by a resumed run.
         changed = sorted(
             n for n in set(outcome.files) | set(want.files)
             if outcome.files.get(n) != want.files.get(n)
+            and not n.startswith("run/records/")
             and not (n in outcome.files and n in case.varying))
         if outcome.status == want.status:
             if not changed and (outcome.out == want.out or "" in case.varying):
@@ -239,13 +241,15 @@ set -o pipefail
             return f"status {outcome.status} without a message"
         left = [n for n in outcome.files if n not in case.before]
         lost = [n for n in case.before
-                if outcome.files.get(n) != case.before[n]]
+                if outcome.files.get(n) != case.before[n]
+                and n != "run/run.lock"]
         if lost:
             return "input changed: " + ", ".join(lost[:5])
         # Logs and the tasks of a run are kept for the user, and with a message
         # also hidden folders.
         left = [n for n in left if not re.match(r"run(/|\.log)", n)]
-        if "could not be restored" in text:
+        # A sweep with a failed case has tables that say so.
+        if "could not be restored" in text or "cases of the sweep" in text:
             return None
         if re.search(r"the next run|resume", text):
             left = [n for n in left if not re.search(r"(^|/)\.", n)]

@@ -108,7 +108,7 @@ static int add_module(struct dl_phdr_info *info, size_t size, void *data)
     range[k].from = info->dlpi_addr + p->p_vaddr;
     range[k].to = range[k].from + p->p_memsz;
     snprintf(range[k].name, sizeof range[k].name, "%.60s", name);
-    range[k].owner = owner_of(name, "fault.so");
+    range[k].owner = owner_of(name, "fault_calls.so");
     n_range = k + 1;
   }
   return 0;
