@@ -8,6 +8,7 @@
 #include "base/helper/helper.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -104,11 +105,14 @@ static struct vg_run_report report_of(const vanguard_job *job)
 static char *json_report(const vanguard_job *job)
 {
   const struct vg_run_report r = report_of(job);
-  json_t *o = job->file.identity
-              ? file_json(job)
-              : vg_run_report_json(&r, job->failure.code >= 0, &job->failure);
-  char *text = o ? json_dumps(o, JSON_INDENT(2)) : NULL;
+  json_t *o;
+  char *text;
 
+  vg_json_forget();
+  o = job->file.identity
+      ? file_json(job)
+      : vg_run_report_json(&r, job->failure.code >= 0, &job->failure);
+  text = o ? json_dumps(o, JSON_INDENT(2)) : NULL;
   json_decref(o);
   return text;
 }

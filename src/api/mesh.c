@@ -10,6 +10,7 @@
 #include "api/job.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "run/common/text.h"
 #include "run/input/sizes.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
@@ -169,7 +170,7 @@ static vg_status make_surface(vanguard_job *job)
                    job->run.size);
   VG_TRY(vg_boundary_shape(&p->read, &o, &job->show, &p->boundary, &job->err));
   VG_TRY(vg_boundary_check(&p->boundary, &job->show, &job->err));
-  vg_boundary_finish_conditions(&p->boundary);
+  VG_TRY(vg_boundary_finish_conditions(&p->boundary, &job->err));
   vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
 done:
   return st;
@@ -197,7 +198,8 @@ static vg_status make_forecast(vanguard_job *job, struct vg_plan *plan)
 {
   vg_status st = vg_plan_make(plan, &job->err);
 
-  if (st >= 0) vg_boundary_finish_conditions(&job->problem.boundary);
+  if (st >= 0)
+    st = vg_boundary_finish_conditions(&job->problem.boundary, &job->err);
   return st;
 }
 
@@ -260,6 +262,7 @@ vg_status vg_job_run(vanguard_job *job, enum vg_job_goal goal,
 
   if (st < 0) return st;
   assert((goal == VG_JOB_FORECAST) == (plan != NULL));
+  vg_print_forget();
   vg_job_begin(job, progress, user);
   before = vg_thread_data();
   st = make(job, goal, plan);

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,14 +148,14 @@ static int own_folder(char *out, size_t size)
 {
   static const char mark = 0;
   Dl_info info;
-  char *path = NULL, *slash;
+  char full[PATH_MAX], *path = NULL, *slash;
 
+  /* Without memory of the heap: a helper is not absent because memory is. */
   if (dladdr(&mark, &info) && info.dli_fname && strstr(info.dli_fname, ".so"))
-    path = realpath(info.dli_fname, NULL);
-  if (!path) path = realpath("/proc/self/exe", NULL);
+    path = realpath(info.dli_fname, full);
+  if (!path) path = realpath("/proc/self/exe", full);
   slash = path ? strrchr(path, '/') : NULL;
   if (slash) snprintf(out, size, "%.*s", (int)(slash - path), path);
-  free(path);
   return slash != NULL;
 }
 

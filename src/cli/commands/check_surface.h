@@ -4,8 +4,7 @@
 #ifndef VG_CLI_COMMANDS_CHECK_SURFACE_H
 #define VG_CLI_COMMANDS_CHECK_SURFACE_H
 
-#include <jansson.h>
-
+#include "run/common/json_build.h"
 #include "run/input/input.h"
 
 /** Names of files as on the command line; NULL: not given. */

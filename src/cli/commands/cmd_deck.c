@@ -2,6 +2,7 @@
 /* vanguard deck: a commented run deck with every setting at its default, as
  * text or JSON; the JSON Schema of decks. */
 #define _GNU_SOURCE
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -91,6 +92,8 @@ static vg_status to_stdout(const struct vg_settings *s, enum vg_deck_form form,
   f = st < 0 ? NULL : fopen(path, "r");
   while (f && (n = fread(part, 1, sizeof part, f)) > 0)
     fwrite(part, 1, n, stdout);
+  if (st >= 0 && (!f || ferror(f)))
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", path, strerror(errno));
   if (f) fclose(f);
   unlink(path);
   return st;

@@ -16,6 +16,7 @@
 #include "run/common/ranges.h"
 #include "run/common/text.h"
 #include "run/settings/deck.h"
+#include "run/stages/output.h"
 
 struct arguments {
   const char *name, *dir;
@@ -148,6 +149,51 @@ static vg_status new_path(const char *stem, const char *suffix, char **out,
                  *out);
 }
 
+static const char *const suffixes[] = { "lb8.ugrid", "mapbc", "deck" };
+
+/* The file STEM.suffixes[i] in the hidden folder. */
+static vg_status write_file(struct vg_outputs *o, int i, const char *name,
+                            const struct vg_mesh *surface,
+                            const struct vg_mesh *all,
+                            const struct vg_settings *s, const char *comment,
+                            struct vg_error *err)
+{
+  char *path = vg_outputs_temp_path(o, suffixes[i]);
+  vg_status st = path ? vg_outputs_add(o, suffixes[i], err)
+                      : vg_fail_memory(err, "a path");
+
+  if (st >= 0 && i == 0) st = vg_format_write(path, surface, err);
+  if (st >= 0 && i == 1)
+    st = vg_mapbc_write(path, all, VG_MAPBC_VGRID, name, NULL, err);
+  if (st >= 0 && i == 2)
+    st = vg_deck_write(path, s, comment, VG_DECK_CHANGED, err);
+  free(path);
+  return vg_outputs_failed(o, st, err);
+}
+
+/* All files, or none. */
+static vg_status write_files(const char *stem, const char *name,
+                             const struct vg_mesh *surface,
+                             const struct vg_mesh *all,
+                             const struct vg_settings *s, const char *comment,
+                             struct vg_error *err)
+{
+  struct vg_outputs o = VG_OUTPUTS_INIT;
+  struct vg_notes notes = { 0 };
+  vg_status st;
+
+  VG_TRY(vg_outputs_place(stem, NULL, &o, err));
+  VG_TRY(vg_outputs_claim(&o, &notes, err));
+  VG_TRY(vg_outputs_begin(&o, NULL, err));
+  for (int i = 0; i < 3 && st >= 0; i++)
+    st = write_file(&o, i, name, surface, all, s, comment, err);
+  if (st >= 0) st = vg_outputs_commit(&o, err);
+done:
+  vg_notes_release(&notes);
+  vg_outputs_release(&o);
+  return st;
+}
+
 static vg_status write_project(char *const path[3], const char *stem,
                                const char *name, size_t wanted,
                                const struct vg_demo *demo, struct vg_error *err)
@@ -166,12 +212,9 @@ static vg_status write_project(char *const path[3], const char *stem,
     surface.n_patch = 1;
   }
   VG_TRY(settings_of(name, demo, &s, err));
-  VG_TRY(vg_format_write(path[0], &surface, err));
-  VG_TRY(
-    vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL, err));
   has_layers = set_layers(name, &s);
-  VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
-                       VG_DECK_CHANGED, err));
+  VG_TRY(write_files(stem, name, &surface, &demo->surface, &s,
+                     has_layers ? layer_comment : NULL, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));
@@ -201,9 +244,9 @@ static vg_status make(const struct arguments *a, struct vg_error *err)
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  VG_TRY(new_path(stem, "lb8.ugrid", &path[0], err));
-  VG_TRY(new_path(stem, "mapbc", &path[1], err));
-  VG_TRY(new_path(stem, "deck", &path[2], err));
+  VG_TRY(new_path(stem, suffixes[0], &path[0], err));
+  VG_TRY(new_path(stem, suffixes[1], &path[1], err));
+  VG_TRY(new_path(stem, suffixes[2], &path[2], err));
   VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
   if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
   VG_TRY(write_project(path, stem, a->name, a->n_cell, &demo, err));

@@ -245,7 +245,7 @@ static vg_status make_surface(struct vg_problem *p, struct vg_display *show,
   VG_TRY(vg_problem_read(p, NULL, show, err));
   VG_TRY(vg_boundary_shape(&p->read, &o, show, b, err));
   VG_TRY(vg_boundary_check(b, show, err));
-  vg_boundary_finish_conditions(b);
+  VG_TRY(vg_boundary_finish_conditions(b, err));
   vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
 done:
   return st;

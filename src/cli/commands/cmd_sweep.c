@@ -271,7 +271,12 @@ static int conclude(const struct vg_sweep *s)
   else
     fprintf(to, "Digests were not compared: no two cases have equal mesh "
                 "options and digests\n");
-  return n_done == s->n ? VG_EXIT_DONE : VG_EXIT_FAILED;
+  if (n_done == s->n) return VG_EXIT_DONE;
+  fprintf(stderr,
+          "vanguard: %zu of %zu cases of the sweep are not done; the log of "
+          "each is %s/CASE/run.log\n",
+          s->n - n_done, s->n, s->o->dir);
+  return VG_EXIT_FAILED;
 }
 
 static vg_status run_all(struct vg_sweep *s, struct vg_error *err)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Version of the program and of its libraries. */
 #include <gnu/libc-version.h>
-#include <jansson.h>
 #include <string.h>
 
 #include "base/helper/helper.h"
@@ -15,6 +14,7 @@
 #include "partition/graph/graph.h"
 #include "partition/model/rates.h"
 #include "partition/store/store.h"
+#include "run/common/json_build.h"
 
 static void put(FILE *to, const struct vg_library *l)
 {

@@ -13,9 +13,12 @@ int vg_cli_exit(const struct vg_error *err)
 
 int vg_cli_written(int status)
 {
-  if (!fflush(stdout) && !ferror(stdout)) return status;
+  int is_lost = vg_print_is_lost();
+
+  if (!fflush(stdout) && !ferror(stdout) && !is_lost) return status;
   fprintf(stderr,
-          "vanguard: standard output could not be written completely\n");
+          "vanguard: %sstandard output could not be written completely\n",
+          is_lost ? "not enough memory: " : "");
   return status == VG_EXIT_USAGE ? status : VG_EXIT_FAILED;
 }
 

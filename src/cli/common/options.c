@@ -267,8 +267,11 @@ void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
   all.children = child;
   argp_err_exit_status = VG_EXIT_USAGE;
   check_options(argp->options, argc, argv);
-  if (argp_parse(&all, argc, argv, ARGP_NO_HELP, NULL, input))
-    exit(VG_EXIT_USAGE);
+  if (argp_parse(&all, argc, argv, ARGP_NO_HELP, NULL, input)) {
+    /* Wrong usage ends the program earlier, with a message. */
+    fprintf(stderr, "vanguard: not enough memory for the options\n");
+    exit(VG_EXIT_FAILED);
+  }
 }
 
 error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,

@@ -5,8 +5,7 @@
 #ifndef VG_CLI_HTML_HTML_H
 #define VG_CLI_HTML_HTML_H
 
-#include <jansson.h>
-
+#include "run/common/json_build.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/stages/run.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Output of the forecast of a project: text, JSON, plot. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include "cli/plan/plan_output.h"
 #include "cli/plot/plot.h"
 #include "partition/advance/ways.h"
+#include "run/common/json_build.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"

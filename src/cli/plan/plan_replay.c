@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard plan --replay: simulates the tasks of a recorded run on other
  * machines. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include "cli/plan/plan.h"
 #include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
+#include "run/common/json_build.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "cli/plot/timeline.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/stream/stream.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 
 #define SECONDS_MAX 1e9
@@ -106,6 +106,7 @@ static void put_string(struct vg_output *out, const char *text)
   json_t *string = vg_text_json(text);
   char *quoted = json_dumps(string, JSON_ENCODE_ANY);
 
+  if (!quoted) vg_print_lose();
   vg_output_text(out, quoted ? quoted : "\"\"");
   free(quoted);
   json_decref(string);

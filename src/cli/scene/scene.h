@@ -5,9 +5,8 @@
 #ifndef VG_CLI_SCENE_SCENE_H
 #define VG_CLI_SCENE_SCENE_H
 
-#include <jansson.h>
-
 #include "base/comm.h"
+#include "run/common/json_build.h"
 #include "run/picture/decimate.h"
 
 /** A decimated surface, sorted by patches. */

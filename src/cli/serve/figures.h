@@ -4,11 +4,11 @@
 #ifndef VG_CLI_SERVE_FIGURES_H
 #define VG_CLI_SERVE_FIGURES_H
 
-#include <jansson.h>
 #include <stdio.h>
 
 #include "cli/http/http.h"
 #include "cli/serve/runs.h"
+#include "run/common/json_build.h"
 
 /** Path of the result whose name ends with `suffix`, relative to the folder of
  * the run, as in "mesh/wing.report.json"; free it. NULL: no result has

@@ -3,7 +3,6 @@
 #include "cli/serve/looks.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +14,7 @@
 #include "cli/common/process.h"
 #include "cli/look/look.h"
 #include "cli/serve/runs.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 #include "run/settings/deck.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The form of a run. Declared in cli/serve/form.h. */
 #define _GNU_SOURCE
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/serve/form.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/rows.h"
+#include "run/common/json_build.h"
 
 #define VALUE_SIZE (2 * VG_LIST_MAX + 4)
 

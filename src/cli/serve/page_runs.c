@@ -2,7 +2,6 @@
 /* The list of runs. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <dirent.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +11,7 @@
 #include "cli/serve/figures.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 
 /* Limits of a page: runs, bytes and lines of the end of a log, files of a

@@ -2,12 +2,12 @@
 /* run.json: parameters and state of a run, for the next portal. Declared in
  * cli/serve/runs.h. */
 #define _GNU_SOURCE
-#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/serve/runs.h"
+#include "run/common/json_build.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 

@@ -12,6 +12,7 @@
 #include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
+#include "run/common/json_build.h"
 #include "run/settings/deck.h"
 
 /* Split "12/log" into 12 and "log"; 0: no number. */
@@ -396,6 +397,7 @@ static void post(struct vg_portal *p, struct vg_request *r, const char *path,
 void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
               struct vg_reply *a)
 {
+  vg_json_forget();
   if (!*rest) vg_reply_go(p, a, ""); /* relative URLs need the '/' */
   else if (!strcmp(r->method, "POST")) post(p, r, rest + 1, a);
   else get(p, r, rest + 1, a);

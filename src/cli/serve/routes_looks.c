@@ -3,7 +3,6 @@
  * starts one, GET looks/ID has its state and result, GET looks/ID/scene the 3-D
  * view, POST looks/ID/stop ends it. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +10,7 @@
 #include "cli/look/look.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
+#include "run/common/json_build.h"
 #include "run/common/text.h"
 
 static void answer_json(struct vg_reply *a, int status, char *text)

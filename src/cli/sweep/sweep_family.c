@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A grid family: its members, and how well they follow the family rule. */
 #define _GNU_SOURCE
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "cli/sweep/sweep.h"
 #include "io/stream/stream.h"
+#include "run/common/json_build.h"
 
 static const char *const names[VG_MEMBER_N] = { "cells", "surface_edge",
                                                 "field_edge", "first_height",

@@ -2,7 +2,6 @@
 /* Reads report and timeline of the runs of a sweep, and compares runs. */
 #define _GNU_SOURCE
 #include <dirent.h>
-#include <jansson.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +12,7 @@
 #include "base/memory.h"
 #include "cli/sweep/sweep.h"
 #include "partition/store/store.h"
+#include "run/common/json_build.h"
 
 static int ends_with(const char *text, const char *end)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes the tables and plots of a sweep. */
 #define _GNU_SOURCE
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +12,7 @@
 #include "io/stream/stream.h"
 #include "partition/model/model.h"
 #include "partition/model/rates.h"
+#include "run/common/json_build.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"

@@ -270,28 +270,29 @@ static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Keep the input triangles within the distance of face f. Returns the number of
- * points that are newly kept. */
-static size_t keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
-                        size_t f, double distance)
+/* Keep the input triangles within the distance of face f. Adds the number of
+ * points that are newly kept to *n_new. */
+static vg_status keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
+                           size_t f, double distance, size_t *n_new,
+                           struct vg_error *err)
 {
   struct vg_box box = VG_BOX_EMPTY;
   uint32_t *tri;
-  size_t n, n_new = 0;
+  size_t n;
 
   for (int k = 0; k < 3; k++) vg_box_add(&box, m->point[m->tri[f][k]]);
   n = vg_ref_around(&j->ref, &box, distance, 0, NULL);
   tri = vg_alloc(n, sizeof *tri);
-  if (!tri) return 0;
+  if (!tri) return vg_fail_memory(err, "the remeshed surface");
   vg_ref_around(&j->ref, &box, distance, n, tri);
   for (size_t i = 0; i < 3 * n; i++) {
     uint8_t *keep = &j->keep[j->ref.tri[tri[i / 3]][i % 3]];
 
-    n_new += !*keep;
+    *n_new += !*keep;
     if (!*keep) *keep = VG_WORK_KEPT;
   }
   free(tri);
-  return n_new;
+  return VG_OK;
 }
 
 static double edge_of(const struct vg_mesh *m, size_t f)
@@ -308,6 +309,7 @@ static vg_status keep_around(struct vg_remesh_job *j, const struct vg_mesh *m,
                              const struct vg_surface_report *r, double rings,
                              struct vg_error *err)
 {
+  vg_status st = VG_OK;
   size_t n = 0;
 
   if (!j->keep) j->keep = vg_calloc(j->whole->n_point, 1);
@@ -318,11 +320,13 @@ static vg_status keep_around(struct vg_remesh_job *j, const struct vg_mesh *m,
 
       if (!is_fault(d) || d->face[k] == SIZE_MAX) continue;
       if (!j->n_keep && !n) memcpy(j->r.kept_at, d->at, sizeof d->at);
-      n += keep_near(j, m, d->face[k], rings * edge_of(m, d->face[k]));
+      VG_TRY(
+        keep_near(j, m, d->face[k], rings * edge_of(m, d->face[k]), &n, err));
     }
   j->n_keep += n;
   j->is_all_kept = !n;
-  return VG_OK;
+done:
+  return st;
 }
 
 static vg_status refuse_crossing(const struct vg_remesh_job *j,

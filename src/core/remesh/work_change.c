@@ -63,6 +63,11 @@ static uint32_t new_tri(struct vg_tris *w)
     return VG_REF_NONE;
   }
   t = (uint32_t)w->n_tri++;
+  /* As a removed triangle: it stays one if there is no memory for the next. */
+  memset(w->tri[t], 0, sizeof w->tri[t]);
+  memset(w->mate + 3 * t, 0, 3 * sizeof *w->mate);
+  memset(w->edge + 3 * t, 0, 3 * sizeof *w->edge);
+  w->stamp[t] = 0;
   w->first[t] = VG_REF_NONE;
   return t;
 }

@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,13 +40,21 @@ static void release(struct vg_commit *c)
   c->lock = -1;
 }
 
+/* Path of a file of the hidden folder, without memory of the heap: a run that
+ * has none left must find a journal and remove its files. A longer path than
+ * PATH_MAX is cut, and no call accepts it. */
+static void path_in(const struct vg_commit *c, const char *name,
+                    char path[PATH_MAX + 1])
+{
+  snprintf(path, PATH_MAX + 1, "%s/%s", c->hidden, name);
+}
+
 static int has(const struct vg_commit *c, const char *name)
 {
-  char *path = vg_commit_path(c->hidden, name);
-  int is_there = path && vg_path_exists(path);
+  char path[PATH_MAX + 1];
 
-  free(path);
-  return is_there;
+  path_in(c, name, path);
+  return vg_path_exists(path);
 }
 
 static vg_status failed(const struct vg_commit *c, const char *what,
@@ -59,13 +68,10 @@ static vg_status failed(const struct vg_commit *c, const char *what,
 static vg_status drop(const struct vg_commit *c, const char *name,
                       struct vg_error *err)
 {
-  char *path = vg_commit_path(c->hidden, name);
-  vg_status st = VG_OK;
+  char path[PATH_MAX + 1];
 
-  if (!path) return vg_fail_memory(err, "the output paths");
-  if (vg_tree_remove(path)) st = failed(c, "cannot be removed", err);
-  free(path);
-  return st;
+  path_in(c, name, path);
+  return vg_tree_remove(path) ? failed(c, "cannot be removed", err) : VG_OK;
 }
 
 static vg_status drop_files(const struct vg_commit *c, struct vg_error *err)
@@ -82,14 +88,12 @@ done:
 static vg_status rename_in(const struct vg_commit *c, const char *from,
                            const char *to, struct vg_error *err)
 {
-  char *a = vg_commit_path(c->hidden, from), *b = vg_commit_path(c->hidden, to);
-  vg_status st = VG_OK;
+  char a[PATH_MAX + 1], b[PATH_MAX + 1];
 
-  if (!a || !b) st = vg_fail_memory(err, "the output paths");
-  else if (rename(a, b)) st = failed(c, "cannot be written", err);
-  free(a);
-  free(b);
-  return st < 0 ? st : vg_folder_sync(c->hidden, err);
+  path_in(c, from, a);
+  path_in(c, to, b);
+  if (rename(a, b)) return failed(c, "cannot be written", err);
+  return vg_folder_sync(c->hidden, err);
 }
 
 /* --- the moves ----------------------------------------------------------- */
@@ -154,6 +158,18 @@ static vg_status write_journal(struct vg_commit *c, struct vg_error *err)
   return st;
 }
 
+/* The disk may still have the journal. */
+static vg_status explain_kept(const struct vg_commit *c, vg_status st,
+                              struct vg_error *err)
+{
+  if (!err) return st;
+  err->text[600] = 0;
+  return vg_fail(err, st,
+                 "%s; %s stays, and the next run that writes to this folder "
+                 "removes it",
+                 strdupa(err->text), c->hidden);
+}
+
 vg_status vg_commit_run(struct vg_commit *c, struct vg_error *err)
 {
   vg_status st;
@@ -164,7 +180,7 @@ vg_status vg_commit_run(struct vg_commit *c, struct vg_error *err)
   st = write_journal(c, err);
   if (st < 0) {
     if (has(c, JOURNAL)) end(c, JOURNAL, NULL);
-    return st;
+    return c->is_kept ? explain_kept(c, st, err) : st;
   }
   st = vg_moves_do(c, err);
   if (st >= 0) st = vg_moves_sync(c, err);
@@ -307,13 +323,13 @@ static vg_status lock(struct vg_commit *c, int makes, char *holder,
 
 static void unlock(struct vg_commit *c)
 {
-  char *path = vg_commit_path(c->hidden, LOCK);
+  char path[PATH_MAX + 1];
 
-  if (path && !c->is_kept) {
+  path_in(c, LOCK, path);
+  if (!c->is_kept) {
     vg_lock_drop(path, c->lock);
     rmdir(c->hidden);
   } else close(c->lock);
-  free(path);
 }
 
 static vg_status is_busy(const struct vg_commit *c, const char *name,

@@ -3,12 +3,75 @@
 #include "run/commit/tree.h"
 
 #include <assert.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <fts.h>
+#include <stdalign.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* --- removal, without memory -------------------------------------------- */
+
+static int remove_at(int folder, const char *name);
+
+/* One pass over the entries of a folder. Returns the number of entries that it
+ * removed; *why: errno of a failure. */
+static size_t remove_entries(int fd, int *why)
+{
+  alignas(struct dirent64) char buffer[2048];
+  size_t n_removed = 0;
+  ssize_t n;
+
+  while ((n = getdents64(fd, buffer, sizeof buffer)) > 0)
+    for (ssize_t at = 0; at < n;) {
+      const struct dirent64 *e = (const void *)(buffer + at);
+
+      at += e->d_reclen;
+      if (!strcmp(e->d_name, ".") || !strcmp(e->d_name, "..")) continue;
+      if (!remove_at(fd, e->d_name)) n_removed++;
+      else *why = errno;
+    }
+  if (n < 0 && errno != ENOENT) *why = errno;
+  return n_removed;
+}
+
+/* Returns 0, or errno. */
+static int remove_folder_at(int folder, const char *name)
+{
+  int fd = openat(folder, name,
+                  O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  int why = fd < 0 ? errno : 0;
+
+  /* Some file systems skip entries if others are removed meanwhile. */
+  while (fd >= 0 && remove_entries(fd, &why) && !why) lseek(fd, 0, SEEK_SET);
+  if (fd >= 0) close(fd);
+  if (why) return why;
+  return unlinkat(folder, name, AT_REMOVEDIR) ? errno : 0;
+}
+
+static int remove_at(int folder, const char *name)
+{
+  int why = unlinkat(folder, name, 0) ? errno : 0;
+
+  /* POSIX has EPERM for a folder, Linux EISDIR. */
+  if (why == EISDIR || why == EPERM) {
+    int answer = remove_folder_at(folder, name);
+
+    if (answer != ENOTDIR) why = answer;
+  }
+  if (!why || why == ENOENT) return 0;
+  errno = why;
+  return -1;
+}
+
+int vg_tree_remove(const char *path)
+{
+  return remove_at(AT_FDCWD, path);
+}
+
+/* --- walks ---------------------------------------------------------------- */
 
 /* NULL: errno is the reason. */
 static FTS *walk(const char *path)
@@ -16,26 +79,6 @@ static FTS *walk(const char *path)
   char *const paths[] = { (char *)path, NULL };
 
   return fts_open(paths, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-}
-
-int vg_tree_remove(const char *path)
-{
-  FTS *tree = walk(path);
-  FTSENT *e;
-  int why = tree ? 0 : errno;
-
-  while (tree && (e = fts_read(tree))) {
-    int failed = 0;
-
-    if (e->fts_info == FTS_D) continue;
-    if (e->fts_info == FTS_DP) failed = rmdir(e->fts_path);
-    else if (e->fts_info == FTS_DNR) why = e->fts_errno;
-    else failed = unlink(e->fts_path);
-    if (failed && errno != ENOENT) why = errno;
-  }
-  if (tree) fts_close(tree);
-  errno = why;
-  return why ? -1 : 0;
 }
 
 uint64_t vg_tree_bytes(const char *path)

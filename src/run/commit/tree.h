@@ -8,7 +8,8 @@
 #include "base/status.h"
 
 /** Removes a file, or a folder with its content. Symbolic links are not
- * followed. An absent path is no failure. Returns 0, or -1 with errno. */
+ * followed. An absent path is no failure. Works without memory, so that a run
+ * that has none left removes its files. Returns 0, or -1 with errno. */
 int vg_tree_remove(const char *path);
 
 /** Bytes of all files in a folder; 0 if it is absent. */

@@ -3,10 +3,10 @@
 #ifndef VG_RUN_COMMON_JSON_FILE_H
 #define VG_RUN_COMMON_JSON_FILE_H
 
-#include <jansson.h>
 #include <stdio.h>
 
 #include "base/status.h"
+#include "run/common/json_build.h"
 
 /** Writes o, indented, to path. The file appears only when it is complete.
  *

@@ -2,6 +2,7 @@
 #include "run/common/text.h"
 
 #include <assert.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -122,6 +123,23 @@ int vg_text_ends(const char *text, const char *suffix)
   return n > m && !strcasecmp(text + n - m, suffix);
 }
 
+static atomic_int is_lost;
+
+void vg_print_lose(void)
+{
+  is_lost = 1;
+}
+
+void vg_print_forget(void)
+{
+  is_lost = 0;
+}
+
+int vg_print_is_lost(void)
+{
+  return is_lost;
+}
+
 json_t *vg_text_json(const char *text)
 {
   json_t *o = json_string(text);
@@ -129,7 +147,7 @@ json_t *vg_text_json(const char *text)
 
   if (clean) o = json_string(clean);
   free(clean);
-  return o ? o : json_null();
+  return o;
 }
 
 char *vg_text_count(unsigned long long n, char *text)

@@ -5,8 +5,9 @@
 #ifndef VG_RUN_COMMON_TEXT_H
 #define VG_RUN_COMMON_TEXT_H
 
-#include <jansson.h>
 #include <stddef.h>
+
+#include "run/common/json_build.h"
 
 /** Number of bytes of the character at text, 1 to 4; 0 if it is not valid UTF-8
  * (as defined by Unicode and XML: no overlong forms, surrogates, U+FFFE,
@@ -25,7 +26,8 @@ char *vg_text_column(const char *text, size_t columns, char *out, size_t size);
 /** Cleaned copy, freed by the caller; NULL: no memory. */
 char *vg_text_copy(const char *text);
 
-/** A JSON string; invalid bytes are replaced as by vg_text_clean. */
+/** A JSON string; invalid bytes are replaced as by vg_text_clean. NULL: no
+ * memory. */
 json_t *vg_text_json(const char *text);
 
 /** Removes an incomplete character that truncation has left at the end. */
@@ -33,6 +35,14 @@ void vg_text_trim_end(char *text);
 
 /** 1: text has the suffix, in any case, and something in front of it. */
 int vg_text_ends(const char *text, const char *suffix);
+
+/** Records that a part of the output is lost for lack of memory: the process
+ * ends with a failure (vg_cli_written). Threads: safe. */
+void vg_print_lose(void);
+int vg_print_is_lost(void);
+
+/** Called before the next job of a process. */
+void vg_print_forget(void);
 
 /** Formats a count as "12,345,678" in text[32]; returns text. */
 char *vg_text_count(unsigned long long n, char *text);

@@ -36,10 +36,13 @@ void vg_note(struct vg_notes *notes, const char *format, ...)
   va_start(args, format);
   n = vasprintf(&text, format, args);
   va_end(args);
-  if (n < 0) return;
-  if (vg_reserve(&notes->text, &notes->cap, notes->n + 1, sizeof *notes->text))
-    free(text);
-  else notes->text[notes->n++] = text;
+  if (n >= 0 && !vg_reserve(&notes->text, &notes->cap, notes->n + 1,
+                            sizeof *notes->text)) {
+    notes->text[notes->n++] = text;
+    return;
+  }
+  if (n >= 0) free(text);
+  vg_print_lose();
 }
 
 void vg_notes_release(struct vg_notes *notes)

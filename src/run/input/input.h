@@ -312,7 +312,8 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
  * 1002), and the other patches then that of an inviscid wall, as writers do.
  * Adds a note that lists the patches without a condition. Called once the other
  * conditions are final. */
-void vg_boundary_finish_conditions(struct vg_boundary *b);
+vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
+                                        struct vg_error *err);
 
 /** Writes all faces with a defect to a .vtu, with the kind as a cell field. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

@@ -4,9 +4,8 @@
 #ifndef VG_RUN_INPUT_SOURCE_EFFECT_H
 #define VG_RUN_INPUT_SOURCE_EFFECT_H
 
-#include <jansson.h>
-
 #include "core/sizing/sizing_effect.h"
+#include "run/common/json_build.h"
 #include "run/input/input.h"
 
 /** vg_effects_find with the settings that were read. */

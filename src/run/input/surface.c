@@ -176,14 +176,15 @@ static size_t give_openings(struct vg_boundary *b)
 }
 
 /* A boundary on which some patches have conditions needs them on all. */
-void vg_boundary_finish_conditions(struct vg_boundary *b)
+vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
+                                        struct vg_error *err)
 {
   char list[12 * SHOWN_PATCHES + 8] = "";
   size_t n = 0, at = 0;
   const int is_partly_set = give_openings(b) > 0;
   uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
 
-  if (!has_faces) return; /* As for a note for which there is no memory. */
+  if (!has_faces) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < b->surface.n_tri; i++)
     has_faces[b->surface.tri_patch[i]] = 1;
   for (size_t i = 0; i < b->surface.n_patch; i++) {
@@ -205,6 +206,7 @@ void vg_boundary_finish_conditions(struct vg_boundary *b)
             n, n > 1 ? "es have" : " has", list,
             n > SHOWN_PATCHES ? " ..." : "");
   free(has_faces);
+  return VG_OK;
 }
 
 struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b)

@@ -9,6 +9,7 @@
 #include "run/input/input.h"
 #include "io/mesh/format.h"
 #include "partition/cut/decomposition.h"
+#include "run/common/text.h"
 
 #define SHOWN 12
 
@@ -77,7 +78,10 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   unsigned missing = judged & ~in_use(p, layers_on);
   size_t n_hard = 0;
 
-  if (!given) return; /* As for a note for which there is no memory. */
+  if (!given) {
+    vg_print_lose();
+    return;
+  }
   for (int use = VG_USE_D3M; use < VG_USE_N; use++)
     if (missing >> use & 1) note_use(p, given, (enum vg_use)use);
   free(given);

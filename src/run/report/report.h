@@ -4,7 +4,6 @@
 #ifndef VG_RUN_REPORT_REPORT_H
 #define VG_RUN_REPORT_REPORT_H
 
-#include <jansson.h>
 #include <stdio.h>
 
 #include "core/domain/planar.h"
@@ -14,6 +13,7 @@
 #include "core/mesh/mesh.h"
 #include "core/surface/surface_check.h"
 #include "partition/solver/solver.h"
+#include "run/common/json_build.h"
 #include "run/input/layers.h"
 
 #define VG_SHOWN_DEFECTS 3   /* defects of a kind listed in the text */

@@ -4,11 +4,11 @@
 #ifndef VG_RUN_REPORT_REPORT_PARTS_H
 #define VG_RUN_REPORT_REPORT_PARTS_H
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
 #include "core/judge/quality.h"
+#include "run/common/json_build.h"
 
 /** null if v is not finite. */
 static inline json_t *vg_json_real(double v)

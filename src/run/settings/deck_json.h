@@ -11,8 +11,7 @@
 #ifndef VG_RUN_SETTINGS_DECK_JSON_H
 #define VG_RUN_SETTINGS_DECK_JSON_H
 
-#include <jansson.h>
-
+#include "run/common/json_build.h"
 #include "run/settings/settings.h"
 
 /** Is the text a JSON document? */

@@ -22,6 +22,7 @@
 #include "partition/store/store.h"
 #include "run/common/folder.h"
 #include "run/common/progress.h"
+#include "run/common/text.h"
 #include "run/settings/deck.h"
 #include "run/settings/lists.h"
 #include "run/settings/plan_options.h"
@@ -65,16 +66,18 @@ char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix)
 
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
 {
+  char *path;
+
   assert(o->dir && o->name && suffix);
   if (strcmp(o->dir, ".") == 0) {
-    char *path;
-
-    return asprintf(&path, "%s%s%s", o->name, *suffix == '_' ? "" : ".",
-                    suffix) < 0
-           ? NULL
-           : path;
+    if (asprintf(&path, "%s%s%s", o->name, *suffix == '_' ? "" : ".", suffix) <
+        0)
+      path = NULL;
+  } else {
+    path = join(o->dir, o->name, suffix);
   }
-  return join(o->dir, o->name, suffix);
+  if (!path) vg_print_lose();
+  return path;
 }
 
 vg_status vg_outputs_failed(const struct vg_outputs *o, vg_status st,
@@ -746,6 +749,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
   vg_status st = VG_OK;
 
   assert(!o->is_guest && o->temp_dir);
+  if (vg_print_is_lost()) st = vg_fail_memory(err, "the report");
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     if (!o->file[i].keep_old) st = add_moves(o, &o->file[i], err);
   if (st >= 0) st = vg_commit_run(&o->commit, err);

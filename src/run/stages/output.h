@@ -80,7 +80,8 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
 /** Path of STEM.suffix while it is being written; free() it. */
 char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix);
 
-/** Final path of STEM.suffix; free() it. */
+/** Final path of STEM.suffix, for reports; free() it. NULL: no memory, and
+ * vg_print_is_lost. */
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
 
 /** vg_outputs_begin, and opens in the hidden folder the files that can be
@@ -123,7 +124,8 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
                          struct vg_error *err);
 
 /** Moves all files into place, or none, and removes the hidden folder. When it
- * returns VG_OK all files are on the disk. On rank 0. */
+ * returns VG_OK all files are on the disk. VG_ERR_MEMORY: a note of the report
+ * was lost (vg_print_is_lost). On rank 0. */
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err);
 
 #endif

@@ -65,7 +65,7 @@ static vg_status settle_surface(struct vg_run *r, struct vg_problem *p,
   b->threads = node_threads(r, &p->asked);
   VG_TRY(vg_boundary_close(b, show, err));
   VG_TRY(vg_layer_stage_plan(layers, b, err));
-  vg_boundary_finish_conditions(b);
+  VG_TRY(vg_boundary_finish_conditions(b, err));
   st = vg_problem_settle(p, layers, err);
 done:
   vg_comm_bind_node(r->comm, 0);

@@ -4,7 +4,6 @@
 #ifndef VG_RUN_STAGES_RUN_H
 #define VG_RUN_STAGES_RUN_H
 
-#include <jansson.h>
 #include <stdio.h>
 
 #include "base/comm.h"
@@ -14,6 +13,7 @@
 #include "partition/model/memory_stages.h"
 #include "partition/repair/near.h"
 #include "partition/solver/solver.h"
+#include "run/common/json_build.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Surfaces for the cases of faults.py.
+
+# An octahedron with its corners at distance 1.
+octahedron() {
+  printf 'v %s\n' "1 0 0" "-1 0 0" "0 1 0" "0 -1 0" "0 0 1" "0 0 -1"
+  echo "g body"
+  printf 'f %s\n' "1 3 5" "3 2 5" "2 4 5" "4 1 5" "3 1 6" "2 3 6" "4 2 6" \
+    "1 4 6"
+}
+
+# The same as STL with defects: a triangle is missing, one is reversed, and one
+# is there twice.
+defects() {
+  octahedron | awk '
+    $1 == "v" { corner[++n] = $2 " " $3 " " $4 }
+    $1 == "f" { k++; put($2, $3, $4, k == 2) }
+    function put(a, b, c, is_reversed) {
+      if (k == 8) return
+      if (is_reversed) { t = a; a = b; b = t }
+      text = "facet normal 0 0 0\nouter loop\nvertex " corner[a] \
+        "\nvertex " corner[b] "\nvertex " corner[c] "\nendloop\nendfacet"
+      print text
+      if (k == 5) print text
+    }
+    BEGIN { print "solid defects" }
+    END { print "endsolid defects" }'
+}
