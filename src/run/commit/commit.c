@@ -337,17 +337,16 @@ static vg_status is_busy(const struct vg_commit *c, const char *name,
 {
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: another run is writing %s.* to this folder (%s); wait "
-                 "for its end, or choose another folder with --out (if that "
-                 "process no longer exists, remove %s)",
+                 "for its end, or choose another folder (if that process no "
+                 "longer exists, remove %s)",
                  c->dir, name, holder, c->hidden);
 }
 
 static vg_status cannot_write(const char *dir, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_IO,
-                 "%s: cannot write in this folder: %s; choose another one "
-                 "with --out",
-                 dir, strerror(errno));
+                 "%s: cannot write in this folder: %s; choose another one", dir,
+                 strerror(errno));
 }
 
 /* Locks the folder and makes it ready for new files. */

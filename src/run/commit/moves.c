@@ -79,12 +79,12 @@ static vg_status refuse_kind(const struct vg_move *m, const struct paths *p,
   if (m->kind == VG_MOVE_FILE && is_folder)
     return vg_fail(err, VG_ERR_IO,
                    "%s: a folder exists where a file must be written; move it, "
-                   "or choose another --out DIR",
+                   "or choose another folder",
                    shown(p->to));
   if (m->kind == VG_MOVE_FOLDER && !is_folder)
     return vg_fail(err, VG_ERR_IO,
                    "%s: a file exists where a folder must be written; move it, "
-                   "or choose another --out DIR",
+                   "or choose another folder",
                    shown(p->to));
   return VG_OK;
 }

@@ -259,6 +259,11 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
             "  quadrilaterals: %.1f %% of the area of the walls; layer cells "
             "per point: %.2f\n",
             100 * j->wall_quads, vg_join_density(j));
+  if (j->cells == VG_LAYER_HEX && !(j->wall_quads > 0))
+    fputs("  no hexahedra: the layers are too few or too thin compared with "
+          "the edges of\n  the wall for a transition level, or the triangles "
+          "do not pair\n",
+          to);
   fprintf(to,
           "  rounds of height reduction until free of collisions: %zu; slide "
           "patches remeshed: %zu, %s triangles\n",

@@ -19,9 +19,6 @@ static vg_status out_of_range(const struct vg_param *p, const char *text,
   char lo[33];
 
   lo[vg_format_real(p->lo, lo)] = 0;
-  if (p->hi >= 1e15 && p->lo > -1e15)
-    return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s", p->name,
-                   (int)len, text, p->above_lo ? "above" : "at least", lo);
   return vg_fail(err, VG_ERR_INPUT,
                  "%s is %.*s; it must be %s %s and at most "
                  "%g",
