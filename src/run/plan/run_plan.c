@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "layers/expand/join.h"
 #include "partition/advance/advance.h"
 #include "partition/advance/ways.h"
 #include "run/plan/run_plan_parts.h"
@@ -103,6 +104,22 @@ static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
   return VG_OK;
 }
 
+/* Number of layer cells in mixed output: exact if the layers were grown. */
+static vg_status count_joined(struct vg_plan *p, struct vg_error *err)
+{
+  const enum vg_layer_cells cells = (enum vg_layer_cells)
+                                      p->problem->resolved.settings.cells;
+  uint64_t n = 0;
+  vg_status st;
+
+  p->layer_join = p->layer_tet / 3;
+  if (!p->is_grown || cells == VG_LAYER_TETS) return VG_OK;
+  st = vg_layers_count(&p->problem->boundary.surface, &p->layers->layers, cells,
+                       p->o->workers, &n, err);
+  p->layer_join = (double)n;
+  return st;
+}
+
 static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_mesh *surface = &p->problem->boundary.surface;
@@ -128,6 +145,7 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   } else {
     VG_TRY(vg_plan_lift(p, err));
   }
+  VG_TRY(count_joined(p, err));
   count_time(p, VG_PHASE_LAYERS, start);
   st = measure_front(p, err);
 done:
@@ -144,7 +162,7 @@ static void count_mesh(struct vg_plan *p)
 
   p->tet = field;
   if (p->problem->resolved.settings.cells != VG_LAYER_TETS)
-    p->prism = p->layer_tet / 3;
+    p->prism = p->layer_join;
   else p->tet += p->layer_tet;
   p->cell = p->tet + p->prism;
   p->point = vg_forecast_points(field, faces) + p->layer_point;

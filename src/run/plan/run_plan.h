@@ -88,7 +88,9 @@ struct vg_plan {
   int is_grown; /* 1: layers were grown; 0: estimated. */
   size_t n_wall_point;
   double layer_tet, layer_point;  /* Of the layers, as tetrahedra only. */
-  double cell, point, prism, tet; /* Counts of the mesh; cell: all types. */
+  double layer_join;              /* Cells of the layers in mixed output. */
+  double cell, point, prism, tet; /* Counts of the mesh; cell: all types, prism:
+                                     all that layers have in mixed output. */
   double phase[VG_PHASE_N];       /* Seconds on one core, outside the tasks;
                                      the mesh check includes the files written
                                      with it, writing the files after it. */
