@@ -81,6 +81,7 @@ static inline int vg_no_mpi_text(char *to, int *n, const char *text)
 
 /* clang-format off */
 #define MPI_Abort(...) vg_no_mpi(MPI_ERR_OTHER, __VA_ARGS__)
+#define MPI_Allgather(...) vg_no_mpi(MPI_ERR_OTHER, __VA_ARGS__)
 #define MPI_Cancel(...) vg_no_mpi(MPI_ERR_OTHER, __VA_ARGS__)
 #define MPI_Comm_dup(...) vg_no_mpi(MPI_ERR_OTHER, __VA_ARGS__)
 #define MPI_Comm_free(...) vg_no_mpi(MPI_ERR_OTHER, __VA_ARGS__)

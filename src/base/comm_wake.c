@@ -136,7 +136,7 @@ static void hear(struct vg_life *l, double now)
   while (
     !MPI_Improbe(MPI_ANY_SOURCE, 0, l->comm, &is_there, &handle, &status) &&
     is_there) {
-    MPI_Mrecv(&sign, 1, MPI_CHAR, &handle, MPI_STATUS_IGNORE);
+    MPI_Mrecv(&sign, 1, MPI_BYTE, &handle, MPI_STATUS_IGNORE);
     l->heard[status.MPI_SOURCE] = now;
   }
 }
@@ -150,7 +150,7 @@ static void give_signs(struct vg_life *l)
 
     if (!is_partner(l, r)) continue;
     MPI_Test(&l->request[r], &is_sent, MPI_STATUS_IGNORE);
-    if (is_sent) MPI_Isend(&sign, 1, MPI_CHAR, r, 0, l->comm, &l->request[r]);
+    if (is_sent) MPI_Isend(&sign, 1, MPI_BYTE, r, 0, l->comm, &l->request[r]);
   }
 }
 
@@ -256,8 +256,8 @@ vg_status vg_comm_watch(struct vg_comm *c, double seconds, struct vg_error *err)
   l = life_new(c, seconds);
   st = vg_comm_agree(c, l ? VG_OK : vg_fail_memory(err, "signs of life"), err);
   if (st >= 0 && (MPI_Comm_dup(c->all, &l->comm) ||
-                  MPI_Allgather(MPI_IN_PLACE, 0, MPI_CHAR, l->host,
-                                sizeof *l->host, MPI_CHAR, l->comm)))
+                  MPI_Allgather(MPI_IN_PLACE, 0, MPI_BYTE, l->host,
+                                sizeof *l->host, MPI_BYTE, l->comm)))
     st = vg_fail(err, VG_ERR_REMOTE, "MPI cannot prepare signs of life");
   if (st >= 0) {
     pthread_mutex_init(&l->lock, NULL);
