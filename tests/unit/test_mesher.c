@@ -363,13 +363,14 @@ static int at_once(void *user)
 
 static void stops_and_keeps_limits(void **state)
 {
-  struct vg_mesher_pool *p = open_mesher(bad(8)); /* sleeps */
+  struct vg_mesher_pool *p;
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r = { 0 };
   struct vg_filled f;
 
   (void)state;
   needs_tetgen();
+  p = open_mesher(bad(8)); /* sleeps */
   o.stop.ask = at_once;
   assert_int_equal(fill(p, &box, &o, &f, &r), VG_ERR_STOPPED);
   vg_mesher_close(p);

@@ -525,8 +525,10 @@ static vg_status add_pieces(struct writing *w, const char *stem,
 
   for (size_t k = 0; st >= 0; k++) {
     char *path = vg_slices_piece(stem, k);
-    int there = path && access(path, F_OK) == 0;
+    int there;
 
+    if (!path) return vg_fail_memory(err, "the output paths");
+    there = access(path, F_OK) == 0;
     free(path);
     if (!there) break;
     snprintf(suffix, sizeof suffix, "_%zu.vtu", k);
