@@ -97,7 +97,7 @@ static double curvature(const struct bend *b)
 }
 
 static double arc_size(const struct vg_ref *r, const struct vg_sizes_options *o,
-                       double curvature, int is_far, uint32_t p)
+                       double curvature, const uint8_t *far, uint32_t p)
 {
   const double chord = r->fine_at
                        ? fmin(o->chord, VG_SIZES_CHORD * r->fine_at[p])
@@ -106,7 +106,7 @@ static double arc_size(const struct vg_ref *r, const struct vg_sizes_options *o,
 
   if (!(curvature > 0)) return o->h_max;
   h = 2 * M_PI / (curvature * o->per_turn);
-  return is_far ? h : fmin(h, sqrt(8 * chord / curvature));
+  return far[p] ? h : fmin(h, sqrt(8 * chord / curvature));
 }
 
 /* Curvature of the faces from feature edge h around its start point to the next
@@ -143,11 +143,11 @@ static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
     add_bend(&sum[p], &bend[h / 3], 1);
     if (c->line[h])
       r->size[p] = fmin(r->size[p],
-                        arc_size(r, o, sector(r, c, bend, h), far[p], p));
+                        arc_size(r, o, sector(r, c, bend, h), far, p));
   }
   for (size_t p = 0; p < r->n_point; p++) {
     if (!(r->size[p] < INFINITY))
-      r->size[p] = arc_size(r, o, curvature(&sum[p]), far[p], p);
+      r->size[p] = arc_size(r, o, curvature(&sum[p]), far, p);
     r->size[p] = fmin(r->size[p], o->h_max);
   }
   free(sum);
@@ -206,8 +206,8 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
       /* A jag smaller than the tolerance is not an arc. */
       if (angle * fmin(lu, lv) < o->chord) continue;
       r->size[c->point[k]] = fmin(r->size[c->point[k]],
-                                  arc_size(r, o, 2 * angle / (lu + lv),
-                                           far[c->point[k]], c->point[k]));
+                                  arc_size(r, o, 2 * angle / (lu + lv), far,
+                                           c->point[k]));
     }
 }
 

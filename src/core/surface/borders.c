@@ -12,16 +12,12 @@
 #include "core/mesh/edges.h"
 
 /* S80 */
-#define NARROW                                                                 \
-  0.05 /* of the size: narrower patches share a budget of edges                \
-        */
+#define NARROW 0.05 /* of the size: narrower patches share BUDGET */
 #define MOST                                                                   \
   0.2 /* of the edges at the largest size: most edges along the border         \
          of a patch, */
-#define FEW 1000 /* which may always be this many */
-#define BUDGET                                                                 \
-  2.0 /* of the edges at the largest size: along smooth borders                \
-         of all narrow patches together */
+#define FEW 1000   /* which may always be this many */
+#define BUDGET 2.0 /* of these edges: for all narrow patches together */
 
 struct extent {
   double area, border; /* Area, and length of the border to other patches. */

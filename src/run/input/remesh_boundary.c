@@ -21,8 +21,7 @@
 #define MANY 1e-3
 /* Share of the triangles; above it a tessellation is remeshed. */
 #define MOST 0.2 /* S49 */
-/* Largest relative difference between the areas of a patch and its CAD faces.
- */
+/* Largest relative difference between areas of a patch and of its CAD faces. */
 #define AREA_NEAR 0.05
 
 /* S49: tessellations after the first, as factors on its chord and angle.
@@ -150,7 +149,9 @@ static vg_status given_areas(struct vg_boundary *b, const struct vg_mesh *given,
     for (; a->n < given->n_patch; a->n++) {
       a->id[a->n] = given->patch[a->n].id;
       a->area[a->n] = given_area(b, a->n, area[2 * a->n]);
+      area[2 * a->n] = a->area[a->n];
     }
+    return VG_OK;
   }
   for (size_t i = 0; i < a->n; i++) {
     const size_t at = vg_mesh_find_patch(given, a->id[i]);
