@@ -122,7 +122,7 @@ static char *text_report(const vanguard_job *job)
   const struct vg_run_report r = report_of(job);
   char *text = NULL;
   size_t size;
-  FILE *to = open_memstream(&text, &size);
+  FILE *to = vg_text_open(&text, &size);
   int bad = !to;
 
   if (to && job->file.identity) {

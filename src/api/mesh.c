@@ -143,15 +143,12 @@ static void describe_surface(vanguard_job *job)
   FILE *to;
 
   if (!p->boundary.read || !m->n_tri || vg_comm_node_rank(job->comm)) return;
-  to = open_memstream(&job->details, &size);
+  to = vg_text_open(&job->details, &size);
   if (!to) return;
   vg_report_surface_text(to, m, &p->boundary.check, p->read.unit,
                          vg_boundary_is_stretched(&p->boundary),
                          VG_SHOWN_DEFECTS);
-  if (fclose(to)) {
-    free(job->details);
-    job->details = NULL;
-  }
+  fclose(to);
 }
 
 /* The surface without a farfield or symmetry plane, as vanguard surface makes

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
+#define _GNU_SOURCE
 #include "base/memory.h"
 
 #include <assert.h>
@@ -61,6 +62,58 @@ int vg_reserve(void *block, size_t *cap, size_t need, size_t size)
   memcpy(block, &new, sizeof new);
   *cap = n;
   return 0;
+}
+
+struct text {
+  char **out, *text;
+  size_t *size, n, cap;
+  int is_part;
+};
+
+static ssize_t append(void *cookie, const char *data, size_t n)
+{
+  struct text *t = cookie;
+
+  if (t->is_part || vg_reserve(&t->text, &t->cap, t->n + n + 1, 1)) {
+    t->is_part = 1;
+    return 0; /* an error */
+  }
+  memcpy(t->text + t->n, data, n);
+  t->n += n;
+  t->text[t->n] = 0;
+  return (ssize_t)n;
+}
+
+static int end_text(void *cookie)
+{
+  struct text *t = cookie;
+  int status = t->is_part ? -1 : 0;
+
+  if (status) free(t->text);
+  *t->out = status ? NULL : t->text;
+  *t->size = status ? 0 : t->n;
+  free(t);
+  return status;
+}
+
+FILE *vg_text_open(char **text, size_t *size)
+{
+  const cookie_io_functions_t calls = { .write = append, .close = end_text };
+  struct text *t = vg_calloc(1, sizeof *t);
+  FILE *to;
+
+  assert(text && size);
+  *text = NULL;
+  *size = 0;
+  if (!t) return NULL;
+  *t = (struct text){ .out = text, .size = size };
+  append(t, "", 0); /* The empty text, too, is a text. */
+  to = t->is_part ? NULL : fopencookie(t, "w", calls);
+  if (!to) {
+    free(t->text);
+    free(t);
+  }
+  return to;
 }
 
 void vg_memory_trim(void)

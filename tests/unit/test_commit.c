@@ -444,7 +444,7 @@ static void a_second_process_is_refused(void **state)
     assert_int_equal(vg_commit_open(ROOT, "other", NULL, NULL, &second, &err),
                      VG_OK); /* other names */
     vg_commit_close(&second);
-    vg_commit_sweep(ROOT, NULL, NULL);
+    vg_commit_sweep(ROOT, NULL, NULL, NULL);
     assert_true(exists(c.fresh));
     vg_commit_close(&c);
   }
@@ -488,7 +488,7 @@ static void remains_are_removed(void **state)
     assert_non_null(strstr(told, "removed " ROOT "/" HIDDEN));
     assert_false(exists(in(c.fresh, "x")));
     *told = 0;
-    vg_commit_sweep(ROOT, tell, NULL);
+    vg_commit_sweep(ROOT, NULL, tell, NULL);
     assert_non_null(strstr(told, "removed " ROOT "/.vanguard-second"));
     assert_false(exists(ROOT "/.vanguard-second"));
     vg_commit_close(&c);
@@ -599,7 +599,7 @@ static void damaged_journals_are_refused(void **state)
   assert_non_null(strstr(err.text, HIDDEN "/journal: is damaged"));
   assert_true(exists(ROOT "/" HIDDEN "/new/x"));
   *told = 0;
-  vg_commit_sweep(ROOT, tell, NULL);
+  vg_commit_sweep(ROOT, NULL, tell, NULL);
   assert_non_null(strstr(told, "is damaged"));
   assert_true(exists(ROOT "/" HIDDEN "/new/x"));
   vg_tree_remove(ROOT);

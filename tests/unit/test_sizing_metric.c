@@ -290,6 +290,20 @@ static void bad_metrics_are_reported(void **state)
   check_refused(&o, 0, NULL, "largest aspect 0.5");
 }
 
+/* 115 points outside the sheet, and 50 in it. */
+static void excessive_requests_are_refused(void **state)
+{
+  const struct vg_size_map map = { .metric = sheet };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+
+  (void)state;
+  o.map = &map;
+  o.most_points = 50;
+  check_refused(&o, 0, NULL, "points, most of them near ");
+  o.most_points = 1e6;
+  vg_sizing_free(field(&o, 0, NULL, &box));
+}
+
 /* Small sizes stay, large ones are reduced. */
 static void the_aspect_is_limited(void **state)
 {
@@ -627,6 +641,7 @@ int main(void)
     cmocka_unit_test(bad_metrics_are_reported),
     cmocka_unit_test(the_aspect_is_limited),
     cmocka_unit_test(sources_stretch),
+    cmocka_unit_test(excessive_requests_are_refused),
     cmocka_unit_test(sources_without_a_direction_are_refused),
     cmocka_unit_test(vgrid_sources_stretch),
     cmocka_unit_test(the_least_size_in_a_box_is_found),

@@ -362,7 +362,7 @@ static void show_defects(struct run *r, const struct arguments *a)
 static int print_json(const struct run *r, int ok, const struct vg_error *err)
 {
   json_t *o = report_json(r, ok, err);
-  int bad = !o || json_dumpf(o, stdout, JSON_INDENT(2));
+  int bad = json_dumpf(o, stdout, JSON_INDENT(2));
 
   printf("\n");
   json_decref(o);

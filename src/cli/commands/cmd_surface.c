@@ -131,16 +131,6 @@ static vg_status write_vtu(const char *path, const struct vg_boundary *b,
   return st;
 }
 
-/* Path of file i, to be freed; NULL if out of memory. */
-static char *path_of(const struct files *f, size_t i)
-{
-  char *path;
-
-  return asprintf(&path, "%s.%s", f->stem, f->outputs.file[i].suffix) < 0
-         ? NULL
-         : path;
-}
-
 static json_t *report(const struct vg_problem *p, const struct files *f)
 {
   const struct vg_boundary *b = &p->boundary;
@@ -149,9 +139,9 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
   for (size_t i = 0; i < p->notes.n; i++)
     json_array_append_new(notes, vg_text_json(p->notes.text[i]));
   for (size_t i = 0; i < f->outputs.n_file; i++) {
-    char *path = path_of(f, i);
+    char *path = vg_outputs_final(&f->outputs, f->outputs.file[i].suffix);
 
-    json_array_append_new(files, vg_text_json(path ? path : ""));
+    json_array_append_new(files, path ? vg_text_json(path) : NULL);
     free(path);
   }
   return json_pack("{s:b s:o s:o s:o s:o s:o}", "ok", 1, "remesh",
@@ -210,7 +200,7 @@ static void print(const struct vg_problem *p, const struct files *f)
   for (size_t i = 0; i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);
   for (size_t i = 0; i < f->outputs.n_file; i++) {
-    char *path = path_of(f, i);
+    char *path = vg_outputs_final(&f->outputs, f->outputs.file[i].suffix);
 
     printf("  %s\n", path ? path : "");
     free(path);

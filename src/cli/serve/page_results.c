@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/http/inside.h"
+#include "base/memory.h"
 #include "cli/serve/figures.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
@@ -175,7 +176,7 @@ static size_t print_tables(FILE *to, const struct vg_settings *s, size_t n)
     size_t size;
 
     for (size_t k = 0; k < n; k++) {
-      FILE *one = open_memstream(&text[k], &size);
+      FILE *one = vg_text_open(&text[k], &size);
 
       if (one) vg_rows_print(one, &s[k], kinds[i]);
       if (one) fclose(one);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/scene/assets.h"
 #include "cli/http/archive.h"
 #include "cli/serve/assets.h"
@@ -42,14 +43,15 @@ static void answer_bytes(struct vg_reply *a, const char *type,
 static void answer_page(const struct vg_portal *p, const struct vg_page_view *v,
                         int status, struct vg_reply *a)
 {
-  FILE *to = open_memstream(&a->body, &a->size);
+  FILE *to = vg_text_open(&a->body, &a->size);
 
   a->status = status;
   if (to) {
     if (v) vg_page(p, v, to);
     else vg_page_runs(p, to);
   }
-  if (!to || fclose(to)) vg_reply_text(a, 500, "Out of memory.");
+  if (!to || fclose(to))
+    vg_reply_text(a, 500, "Out of memory.");
 }
 
 /* Files of share/html. */
@@ -369,7 +371,7 @@ static void post_upload(struct vg_portal *p, struct vg_request *r,
     refuse(p, r, "no file was selected", NULL, a);
     return;
   }
-  to = open_memstream(&address, &size);
+  to = vg_text_open(&address, &size);
   if (to) {
     fputs(vg_projects_is_name(r->upload.name) ? "?project=" : "?uploaded=", to);
     vg_markup_path(to, under);

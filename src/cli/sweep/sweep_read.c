@@ -62,7 +62,7 @@ static void take_digests(const json_t *files, struct vg_sweep_case *c)
   struct vg_digest zero = { { 0, 0 } }, d;
   size_t size = 0, i;
   const json_t *file;
-  FILE *to = open_memstream(&c->files, &size);
+  FILE *to = vg_text_open(&c->files, &size);
 
   if (!to) return;
   json_array_foreach(files, i, file)

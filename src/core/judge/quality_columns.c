@@ -131,15 +131,15 @@ static void add_side(struct vg_pairing *p, struct vg_strip s)
   uint32_t other;
 
   if (!next_rung(p->m, &rest, &r)) return;
+  /* Before `first`, which would refer to a strip that is not kept. */
+  if (vg_reserve(&p->strip, &p->cap_strip, p->n_strip + 1, sizeof *p->strip)) {
+    p->refused = 1;
+    return;
+  }
   first = face_of(&r);
   first.owner = (uint32_t)p->n_strip;
   other = vg_waiting_meet(&p->first, &first);
-  if (other != VG_NOBODY) {
-    match(p, p->strip[other], s);
-    return;
-  }
-  if (vg_reserve(&p->strip, &p->cap_strip, p->n_strip + 1, sizeof *p->strip))
-    p->refused = 1;
+  if (other != VG_NOBODY) match(p, p->strip[other], s);
   else p->strip[p->n_strip++] = s;
 }
 

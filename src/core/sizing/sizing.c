@@ -172,8 +172,7 @@ static vg_status build(const struct vg_sizing_options *o,
   set_limits(o, cap, n > 0, side, f, s);
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
-  return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads, o->team,
-                         &s->octree, err);
+  return vg_octree_build(f, lo, side, o, limit, &s->octree, err);
 }
 
 /* Build the hierarchy for the growth of surface samples, from above or from

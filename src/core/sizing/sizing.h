@@ -114,14 +114,16 @@ struct vg_sizing_options {
   struct vg_team *team; /* processes that build the field together
                            (base/team.h), or NULL */
   const struct vg_size_map *map; /* NULL: no map; borrowed for the call */
-  double aspect_max; /* largest ratio of two target edge lengths at a point, >=
-                        1; larger lengths are reduced; 0: default,
-                        VG_ASPECT_MAX */
+  double aspect_max;  /* largest ratio of two target edge lengths at a point, >=
+                         1; larger lengths are reduced; 0: default,
+                         VG_ASPECT_MAX */
+  double most_points; /* a field of size tensors that requests more points in
+                         its box is refused; 0: 2^36 */
 };
 #define VG_ASPECT_MAX 100
 #define VG_SIZING_OPTIONS_INIT                                                 \
   {                                                                            \
-    0, 0, 1.2, 1, 1, 1, 1, NULL, NULL, VG_ASPECT_MAX                           \
+    0, 0, 1.2, 1, 1, 1, 1, NULL, NULL, VG_ASPECT_MAX, 0                        \
   }
 
 /** Growth rate of a sizing field that is scaled by `scale`. */

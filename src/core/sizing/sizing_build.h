@@ -53,7 +53,7 @@ struct vg_octree_build {
   size_t level[VG_OCTREE_DEPTH + 2]; /* first cell of each level; n_cell
                                         after the last */
   int n_level;
-  double lo[3], unit, floor;
+  double lo[3], unit, floor, most_points;
   float surface; /* factor on floor where the surface, not sources,
                     determines the spacing */
   int threads;

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/geometry/tensor.h"
 #include "core/sizing/sizing_build.h"
 
 /* The octree is built level by level (sizing_split.c decides which cells are
@@ -86,6 +87,47 @@ static void raise_limit(const struct level *l)
     b->max_cell = n < VG_OCTREE_LEAF / 4 ? (size_t)n : VG_OCTREE_LEAF / 4;
 }
 
+/* Points in a cell if its largest corner applied everywhere. */
+static double fewest_points(const struct level *l, size_t cell)
+{
+  const struct vg_octree_build *b = l->b;
+  double most = 0;
+
+  for (int i = 0; i < 8; i++) {
+    double h[6];
+
+    for (int k = 0; k < 6; k++)
+      h[k] = (double)b->tensor[b->cell[cell].corner[i]].h[k];
+    most = vg_greater(most, vg_tensor_det(h));
+  }
+  return l->side * l->side * l->side / most;
+}
+
+/* A request for far more points than any mesh can have would fill the memory
+ * with cells of the octree, long before the forecast could refuse it. */
+static vg_status refuse_excess(const struct level *l, struct vg_error *err)
+{
+  const struct vg_octree_build *b = l->b;
+  double n = 0, densest = 0, x[3];
+  size_t where = l->first;
+
+  for (size_t i = l->first; i < l->first + l->n; i++) {
+    double one = fewest_points(l, i);
+
+    n += one;
+    if (one > densest) where = i;
+    densest = vg_greater(densest, one);
+  }
+  if (n <= b->most_points) return VG_OK;
+  vg_octree_place(b, vg_octree_corner(b, b->cell + where), x);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "the sizes request more than %.2g points, most of them near "
+                 "%g %g %g (size %.3g); correct the sizes there, give a "
+                 "smallest size (hmin), or raise max_cells",
+                 n, x[0], x[1], x[2],
+                 cbrt(l->side * l->side * l->side / densest));
+}
+
 /* Decide which cells are split. If the tree would exceed its limit, the floor
  * rises: the field becomes coarser, but uniformly everywhere. */
 static vg_status decide(struct level *l, struct vg_error *err)
@@ -103,7 +145,10 @@ static vg_status decide(struct level *l, struct vg_error *err)
                    l, sizeof out / sizeof *out, out, err);
   if (st < 0) return st;
   for (size_t i = 0; i < l->n; i++) n += l->mark[i];
-  if (b->tensor) raise_limit(l);
+  if (b->tensor) {
+    raise_limit(l);
+    VG_TRY(refuse_excess(l, err));
+  }
   while (n && b->n_cell + 8 * n > b->max_cell) {
     b->floor *= 1.25;
     n = 0;
@@ -114,7 +159,8 @@ static vg_status decide(struct level *l, struct vg_error *err)
     }
   }
   l->n_split = n;
-  return VG_OK;
+done:
+  return st;
 }
 
 /* --- splitting ------------------------------------------------------------ */

@@ -21,6 +21,7 @@
 #define FLOOR_MOST 2 /* upper limit of the scaled floor */
 #define SURFACE 2
 #define STEEP 0.5
+#define MOST_POINTS 68719476736.0 /* 2^36: 16 times what indices allow */
 
 /* The compact tree, in depth-first order, which keeps cells that are near in
  * space near in memory. First the leaves and splits below each cell are
@@ -197,23 +198,26 @@ static int compact(struct vg_octree_build *b, struct vg_octree *t)
 }
 
 vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
-                          double side, double coarseness, size_t max_leaf,
-                          int threads, struct vg_team *team,
-                          struct vg_octree *out, struct vg_error *err)
+                          double side, const struct vg_sizing_options *o,
+                          size_t max_leaf, struct vg_octree *out,
+                          struct vg_error *err)
 {
   struct vg_octree_build b = { .f = f,
                                .unit = side / VG_OCTREE_TOP,
                                .max_cell = max_leaf,
-                               .threads = threads,
-                               .team = team };
+                               .most_points = o->most_points > 0
+                                              ? o->most_points
+                                              : MOST_POINTS,
+                               .threads = o->threads,
+                               .team = o->team };
   vg_status st;
 
   assert(!out->child && !out->leaf);
-  assert(side > 0 && coarseness >= 1 && f->slope > 0);
+  assert(side > 0 && o->coarseness >= 1 && f->slope > 0);
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
   b.floor = FLOOR * sqrt(FLOOR_SLOPE / f->slope);
   if (b.floor > FLOOR_MOST) b.floor = FLOOR_MOST;
-  b.floor *= coarseness;
+  b.floor *= o->coarseness;
   b.surface = f->slope > STEEP ? 1 : SURFACE;
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
@@ -225,7 +229,7 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   free(b.cell);
   free(b.point);
   free(b.tensor);
-  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, threads, err);
+  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, o->threads, err);
   if (st < 0) vg_octree_release(out);
   return st;
 }

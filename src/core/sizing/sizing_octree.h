@@ -112,13 +112,12 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
                      int *by_sources);
 
 /** Build the octree over the cube lo, side with at most about max_leaf leaves.
- * *out is empty before, and on failure. threads: as for vg_parallel_for; the
- * tree does not depend on it. team: NULL, or the processes that build it
- * together. */
+ * *out is empty before, and on failure. Of the options, coarseness, threads,
+ * team and most_points are used. */
 vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
-                          double side, double coarseness, size_t max_leaf,
-                          int threads, struct vg_team *team,
-                          struct vg_octree *out, struct vg_error *err);
+                          double side, const struct vg_sizing_options *o,
+                          size_t max_leaf, struct vg_octree *out,
+                          struct vg_error *err);
 
 void vg_octree_release(struct vg_octree *t);
 

@@ -41,7 +41,7 @@
 /* Why a rank ends the job. */
 #define VG_ENGINE_NO_MEMORY                                                    \
   "no memory is left for messages between ranks, and the job ends; use fewer " \
-  "ranks per node or more nodes"
+  "ranks per node or more nodes (the next run removes temporary files)"
 
 enum {
   VG_MSG_UPDATE = 1,

@@ -4,10 +4,9 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/lock/lock.h"
 #include "partition/store/store_parts.h"
 
 #define RUN "run.txt"
@@ -140,71 +139,24 @@ void vg_store_remove_run(const struct vg_store *s)
 
 /* --- run.lock ------------------------------------------------------------ */
 
-static vg_status is_running(const struct vg_store *s, int fd,
-                            struct vg_error *err)
-{
-  char text[320];
-
-  if (read_text(fd, text, sizeof text) <= 0)
-    strcpy(text, "of an unknown process");
-  text[strcspn(text, "\n")] = 0;
-  return vg_fail(err, VG_ERR_INPUT,
-                 "%s: another run is using this "
-                 "directory (%s); wait for its end or choose another "
-                 "directory (if that host no longer exists, remove "
-                 "%s/" LOCK ")",
-                 s->dir, text, s->dir);
-}
-
-/* Is this still the lock file of the directory? A run that ended may have
- * removed the file between our open and lock. */
-static int is_current(const struct vg_store *s, int fd)
-{
-  struct stat a, b;
-
-  return !fstat(fd, &a) && !fstatat(s->fd, LOCK, &b, 0) &&
-         a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
-
-static void sign(int fd)
-{
-  char host[256] = "", text[320];
-
-  gethostname(host, sizeof host - 1);
-  snprintf(text, sizeof text, "host %s, process %ld\n", host, (long)getpid());
-  /* for people only: the lock holds without this text */
-  if (!ftruncate(fd, 0)) vg_store_put(fd, text, strlen(text));
-}
-
-/* flock ends with the process, however it ends. A file system without locks
- * gives no protection from a second run, but records stay complete. */
 vg_status vg_store_lock(struct vg_store *s, struct vg_error *err)
 {
-  for (;;) {
-    int fd = openat(s->fd, LOCK, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    int error = 0;
+  char holder[VG_LOCK_HOLDER];
+  vg_status st = vg_lock_take(s->fd, LOCK, &s->lock, holder);
 
-    if (fd < 0) return cannot_write(s, errno, err);
-    if (flock(fd, LOCK_EX | LOCK_NB)) error = errno;
-    if (error == EWOULDBLOCK) {
-      vg_status st = is_running(s, fd, err);
-
-      close(fd);
-      return st;
-    }
-    if (error != EINTR && is_current(s, fd)) {
-      sign(fd);
-      s->lock = fd;
-      return VG_OK;
-    }
-    close(fd);
-  }
+  if (st == VG_BLOCKED)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: another run is using this directory (%s); wait for its "
+                   "end or choose another directory (if that host no longer "
+                   "exists, remove %s/" LOCK ")",
+                   s->dir, holder, s->dir);
+  return st < 0 ? cannot_write(s, errno, err) : VG_OK;
 }
 
 void vg_store_unlock(struct vg_store *s, int remove)
 {
   if (s->lock < 0) return;
-  if (remove) unlinkat(s->fd, LOCK, 0);
-  close(s->lock);
+  if (remove) vg_lock_drop(s->fd, LOCK, s->lock);
+  else close(s->lock);
   s->lock = -1;
 }

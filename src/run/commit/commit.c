@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,8 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/lock/lock.h"
 #include "run/commit/commit_parts.h"
-#include "run/commit/lock.h"
 #include "run/commit/tree.h"
 
 #define PREFIX ".vanguard-"
@@ -314,7 +315,7 @@ static vg_status lock(struct vg_commit *c, int makes, char *holder,
   if (!path) return vg_fail_memory(err, "the output paths");
   for (int i = 0; i < ATTEMPTS && st == VG_ERR_IO; i++) {
     if (makes && mkdir(c->hidden, 0777) && errno != EEXIST) break;
-    st = vg_lock_take(path, &c->lock, holder);
+    st = vg_lock_take(AT_FDCWD, path, &c->lock, holder);
     if (!makes || errno != ENOENT) break;
   }
   free(path);
@@ -327,7 +328,7 @@ static void unlock(struct vg_commit *c)
 
   path_in(c, LOCK, path);
   if (!c->is_kept) {
-    vg_lock_drop(path, c->lock);
+    vg_lock_drop(AT_FDCWD, path, c->lock);
     rmdir(c->hidden);
   } else close(c->lock);
 }
@@ -412,7 +413,7 @@ static void sweep_one(const char *dir, const char *name, struct listener to)
         tell(to, "%s of a run that was killed: %s", c.hidden, err.text);
       }
       unlock(&c);
-    } else if (st < 0 && errno != ENOENT)
+    } else if (st == VG_ERR_IO && errno != ENOENT)
       tell(to,
            "%s may have been left behind by a run that was killed, but its "
            "lock cannot be opened: %s",
@@ -426,14 +427,17 @@ static int is_hidden(const struct dirent *entry)
   return !strncmp(entry->d_name, PREFIX, strlen(PREFIX));
 }
 
-void vg_commit_sweep(const char *dir, vg_commit_note *note, void *user)
+void vg_commit_sweep(const char *dir, const struct vg_commit *own,
+                     vg_commit_note *note, void *user)
 {
+  const char *but = own ? strrchr(own->hidden, '/') + 1 : "";
   struct listener to = { note, user };
   struct dirent **entry = NULL;
   int n = scandir(dir, &entry, is_hidden, alphasort);
 
   for (int i = 0; i < n; i++) {
-    sweep_one(dir, entry[i]->d_name, to);
+    if (strcmp(entry[i]->d_name, but) != 0)
+      sweep_one(dir, entry[i]->d_name, to);
     free(entry[i]);
   }
   free(entry);

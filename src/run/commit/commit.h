@@ -40,8 +40,10 @@ vg_status vg_commit_open(const char *dir, const char *name,
                          struct vg_commit *out, struct vg_error *err);
 
 /** Does the same for the hidden folders of all other names in dir, whose
- * processes have ended, and removes them. Failures are notes. */
-void vg_commit_sweep(const char *dir, vg_commit_note *note, void *user);
+ * processes have ended, and removes them. `own` (or NULL) is open in dir.
+ * Failures are notes. */
+void vg_commit_sweep(const char *dir, const struct vg_commit *own,
+                     vg_commit_note *note, void *user);
 
 /** Adds the move of a new file or folder: `from` in the folder `fresh`
  * replaces `to` in DIR. `to` may be an absolute path on the same file system.

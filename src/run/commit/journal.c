@@ -51,7 +51,7 @@ vg_status vg_journal_add(struct vg_journal *j, enum vg_move_kind kind,
 static char *text_of(const struct vg_journal *j, size_t *size)
 {
   char *text = NULL;
-  FILE *f = open_memstream(&text, size);
+  FILE *f = vg_text_open(&text, size);
 
   if (!f) return NULL;
   fputs(FIRST_LINE, f);
@@ -62,9 +62,8 @@ static char *text_of(const struct vg_journal *j, size_t *size)
             strlen(m->from), strlen(m->to), m->from, m->to);
   }
   fputs(LAST_LINE, f);
-  if (!fclose(f)) return text;
-  free(text);
-  return NULL;
+  fclose(f);
+  return text;
 }
 
 /* Returns 0 or errno. */

@@ -44,6 +44,7 @@ json_t *vg_report_counts_json(const struct vg_mesh *m, const double lo[3],
 #define VG_SHOWN_PATCHES 40
 vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err);
+/** NULL if out of memory. */
 json_t *vg_report_patches_json(const struct vg_mesh *m);
 
 /** Unit of length (enum vg_cad_unit), shells, repairs, triangle quality, and

@@ -170,9 +170,9 @@ static json_t *code_json(int32_t code)
 json_t *vg_report_patches_json(const struct vg_mesh *m)
 {
   struct extent *e = patch_extents(m);
-  json_t *list = json_array();
+  json_t *list = e ? json_array() : NULL;
 
-  for (size_t i = 0; e && i < m->n_patch; i++) {
+  for (size_t i = 0; list && i < m->n_patch; i++) {
     json_t *one = json_pack("{s:i s:o s:o s:o s:I s:f}", "id",
                             (int)m->patch[i].id, "name",
                             vg_text_json(m->patch[i].name), "usm3d",

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/stream/stream.h"
@@ -108,7 +109,7 @@ char *vg_write_list_pattern(void)
 {
   char *text = NULL;
   size_t size;
-  FILE *to = open_memstream(&text, &size);
+  FILE *to = vg_text_open(&text, &size);
   const char *word;
 
   if (!to) return NULL;
@@ -118,10 +119,7 @@ char *vg_write_list_pattern(void)
     for (; *word; word++) fprintf(to, *word == '.' ? "\\%c" : "%c", *word);
   }
   fprintf(to, ")(?: *, *(?!$)| +| *$))+)" END);
-  if (fclose(to)) {
-    free(text);
-    return NULL;
-  }
+  fclose(to);
   return text;
 }
 

@@ -184,6 +184,9 @@ struct vg_sizing_options vg_options_sizing(const struct vg_settings *s,
   o.from_surface = s->surface_sizes;
   o.aspect_max = s->aspect_max;
   o.map = map;
+  /* A cell has about a fifth of a point. A hundred times the limit is certainly
+   * refused by the forecast, also if the box is larger than the domain. */
+  o.most_points = 20 * (double)s->max_cells;
   return o;
 }
 

@@ -200,14 +200,6 @@ static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
   return st;
 }
 
-static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
-{
-  return vg_fail(err, VG_ERR_IO,
-                 "%s: cannot write in this folder: %s; choose "
-                 "another one with --out",
-                 o->dir, strerror(errno));
-}
-
 vg_status vg_outputs_place(const char *stem, const char *dir,
                            struct vg_outputs *o, struct vg_error *err)
 {
@@ -225,7 +217,6 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
     return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name", stem);
   o->made_dir = dir && access(dir, F_OK);
   if (dir) st = vg_make_folder(dir, err);
-  if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
   return st;
 }
 
@@ -300,7 +291,7 @@ vg_status vg_outputs_claim(struct vg_outputs *o, struct vg_notes *notes,
   st = vg_commit_open(o->dir, o->name, add_note, notes, &o->commit, err);
   if (st < 0) return st;
   vg_display_temporary(o->commit.hidden);
-  vg_commit_sweep(o->dir, add_note, notes);
+  vg_commit_sweep(o->dir, &o->commit, add_note, notes);
   return VG_OK;
 }
 

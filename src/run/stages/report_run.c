@@ -17,7 +17,7 @@ static json_t *files_json(const struct vg_run_report *r)
     char *path = vg_outputs_final(r->outputs, f->suffix), digest[36];
     json_t *one = json_object();
 
-    json_object_set_new(one, "path", vg_text_json(path ? path : ""));
+    json_object_set_new(one, "path", path ? vg_text_json(path) : NULL);
     if (f->digest[0] || f->digest[1]) {
       snprintf(digest, sizeof digest, "%016llx%016llx",
                (unsigned long long)f->digest[0],

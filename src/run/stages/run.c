@@ -230,6 +230,8 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
            p->resolved.settings.title, boundary->n_tri);
   s.what = what;
   s.settings = settings = vg_run_settings(&p->resolved.settings, boundary);
+  st = settings ? VG_OK : vg_fail_memory(err, "the settings");
+  VG_TRY(vg_comm_agree(r->comm, st, err));
   st = vg_store_open(r->comm, &s, &r->store, err);
 done:
   free(settings);

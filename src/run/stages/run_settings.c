@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/helper/helper.h"
+#include "base/memory.h"
 #include "base/version.h"
 #include "run/stages/run.h"
 
@@ -57,15 +58,12 @@ static int digest_part(const struct vg_settings *s, enum vg_table_kind kind,
 {
   char *text = NULL;
   size_t size;
-  FILE *to = open_memstream(&text, &size);
+  FILE *to = vg_text_open(&text, &size);
 
   if (!to) return -1;
   if (kind == VG_TABLE_FARFIELD) put_plain(to, s);
   else put_rows(to, s, kind);
-  if (fclose(to)) {
-    free(text);
-    return -1;
-  }
+  if (fclose(to)) return -1;
   *d = vg_digest_of(*d, size, text);
   free(text);
   return 0;
@@ -93,19 +91,21 @@ static int decides(const struct vg_setting_table *t)
   return 0;
 }
 
-/* Tables may be long, so a count and a digest represent their rows. */
-static void put_table(FILE *to, const struct vg_settings *s,
-                      enum vg_table_kind kind)
+/* Tables may be long, so a count and a digest represent their rows. Returns 0,
+ * or -1 if out of memory. */
+static int put_table(FILE *to, const struct vg_settings *s,
+                     enum vg_table_kind kind)
 {
   const struct vg_setting_table *t = vg_settings_table(kind);
   struct vg_digest d = { { 0, 0 } };
   size_t n = vg_settings_rows(s, kind);
 
-  if (!decides(t)) return;
+  if (!decides(t)) return 0;
+  if (n && digest_part(s, kind, &d)) return -1;
   fprintf(to, "table %s=%zu rows", t->name, n);
-  if (n && !digest_part(s, kind, &d))
-    fprintf(to, " (digest %08x)", (unsigned)d.word[0]);
+  if (n) fprintf(to, " (digest %08x)", (unsigned)d.word[0]);
   fputc('\n', to);
+  return 0;
 }
 
 static void put_boundary(FILE *to, const struct vg_mesh *m)
@@ -142,19 +142,18 @@ char *vg_run_settings(const struct vg_settings *s,
 {
   char *text = NULL;
   size_t size;
-  FILE *to = open_memstream(&text, &size);
+  FILE *to = vg_text_open(&text, &size);
+  int bad = 0;
 
   if (!to) return NULL;
   fprintf(to, "program=Vanguard " VG_VERSION ", source %.16s\n",
           vg_source_digest);
   put_plain(to, s);
   for (int kind = VG_TABLE_FARFIELD + 1; kind < VG_TABLE_N; kind++)
-    put_table(to, s, (enum vg_table_kind)kind);
+    bad |= put_table(to, s, (enum vg_table_kind)kind);
   put_mesher(to, s);
   put_boundary(to, boundary);
-  if (fclose(to)) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  if (!fclose(to) && !bad) return text;
+  free(text);
+  return NULL;
 }

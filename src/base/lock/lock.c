@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #define _GNU_SOURCE
-#include "run/commit/lock.h"
+#include "base/lock/lock.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -58,18 +58,19 @@ static int may_live(const char *holder)
 }
 
 /* The file may have been removed by its last holder between open and lock. */
-static int is_current(const char *path, int fd)
+static int is_current(int at, const char *path, int fd)
 {
   struct stat a, b;
 
-  return !fstat(fd, &a) && !stat(path, &b) && a.st_dev == b.st_dev &&
+  return !fstat(fd, &a) && !fstatat(at, path, &b, 0) && a.st_dev == b.st_dev &&
          a.st_ino == b.st_ino;
 }
 
-vg_status vg_lock_take(const char *path, int *fd, char holder[VG_LOCK_HOLDER])
+vg_status vg_lock_take(int at, const char *path, int *fd,
+                       char holder[VG_LOCK_HOLDER])
 {
   for (;;) {
-    int f = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), is_held, why;
+    int f = openat(at, path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), is_held, why;
 
     if (f < 0) return VG_ERR_IO;
     do is_held = flock(f, LOCK_EX | LOCK_NB) ? errno : 0;
@@ -81,13 +82,13 @@ vg_status vg_lock_take(const char *path, int *fd, char holder[VG_LOCK_HOLDER])
       close(f);
       return VG_BLOCKED;
     }
-    if (is_current(path, f)) {
+    if (is_current(at, path, f)) {
       if (!sign(f)) {
         *fd = f;
         return VG_OK;
       }
       why = errno; /* A full disk: the file would name nobody. */
-      unlink(path);
+      unlinkat(at, path, 0);
       close(f);
       errno = why;
       return VG_ERR_IO;
@@ -96,8 +97,8 @@ vg_status vg_lock_take(const char *path, int *fd, char holder[VG_LOCK_HOLDER])
   }
 }
 
-void vg_lock_drop(const char *path, int fd)
+void vg_lock_drop(int at, const char *path, int fd)
 {
-  unlink(path);
+  unlinkat(at, path, 0);
   close(fd);
 }
