@@ -179,7 +179,6 @@ static struct vg_accuracy_report accuracy_of(const struct vg_mesh *m,
 {
   const uint8_t is_wall[2] = { (uint8_t)has_wall, 0 };
   const struct vg_accuracy_options o = { .is_wall = is_wall,
-                                         .y_plus = 1,
                                          .threads = threads,
                                          .with_reference = has_wall };
   struct vg_accuracy_report r;
@@ -461,9 +460,9 @@ static void threads_do_not_matter(void **state)
 static void walls_may_be_everywhere(void **state)
 {
   const uint8_t is_wall[2] = { 1, 1 };
-  const struct vg_accuracy_options o = {
-    .is_wall = is_wall, .y_plus = 1, .threads = 1, .with_reference = 1
-  };
+  const struct vg_accuracy_options o = { .is_wall = is_wall,
+                                         .threads = 1,
+                                         .with_reference = 1 };
   struct vg_mesh m = cube_of(HEXES, 1, 0);
   struct vg_accuracy_report r;
   struct vg_error err = VG_ERROR_INIT;

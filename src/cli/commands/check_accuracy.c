@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "run/input/walls.h"
 #include "run/settings/patch_names.h"
+#include "run/settings/resolved.h"
 
 static vg_status find_walls(const struct vg_settings *s,
                             const struct vg_mesh *m, uint8_t *is_wall,
@@ -25,16 +26,22 @@ done:
   return st;
 }
 
+/* The wall distance of y+ 1; 0: not known. */
+static double viscous_length(const struct vg_layer_settings *l)
+{
+  const double by_flow = vg_settings_first(l, 0, 1);
+
+  return by_flow > 0 ? by_flow : l->first;
+}
+
 vg_status vg_check_accuracy(const struct vg_settings *s,
                             const struct vg_mesh *m,
                             struct vg_accuracy_report *r, struct vg_error *err)
 {
   uint8_t *is_wall = vg_calloc(2 * m->n_patch, 1);
   const struct vg_accuracy_options o = { .is_wall = is_wall,
-                                         .first_height = s->layer.first,
-                                         .y_plus = s->layer.y_plus > 0
-                                                   ? s->layer.y_plus
-                                                   : 1,
+                                         .viscous_length = viscous_length(
+                                           &s->layer),
                                          .with_reference = 1 };
   vg_status st;
 

@@ -8,8 +8,9 @@
 #include "run/settings/settings.h"
 
 /** Measure a valid mesh. Walls are the patches in the list `walls` or, without
- * it, with a viscous condition, but not those in the list `slip`. `y_plus`
- * is that of the first height (0: 1), `first` its height (0: that of the mesh).
+ * it, with a viscous condition, but not those in the list `slip`. The wall
+ * distance of y+ 1 follows from `reynolds` and `reference_length`; otherwise it
+ * is `first`, or the median first height of the mesh.
  *
  * @param r  out: released with vg_accuracy_release
  * VG_ERR_INPUT for patches that do not exist; errors of vg_accuracy_measure. */

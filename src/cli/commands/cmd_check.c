@@ -318,7 +318,8 @@ int vg_cmd_check(int argc, char **argv)
     { "accuracy", 'A', NULL, 0,
       "Report the errors of the schemes of solvers on a mesh: gradients, wall "
       "shear and Laplacian of smooth functions, compared with structured "
-      "meshes; y_plus is that of the first height [default 1]",
+      "meshes; y+ follows from reynolds and reference_length, or is 1 at the "
+      "height first [default of the mesh]",
       VG_GROUP_COMMON },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
       VG_GROUP_COMMON },

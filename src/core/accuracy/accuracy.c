@@ -122,8 +122,9 @@ static vg_status measure(struct vg_measurement *k, enum vg_unknowns in,
   if (in == VG_IN_NODES) {
     VG_TRY(vg_volumes_dual(&k->volumes, k->links, err));
     VG_TRY(find_height(&k->volumes, k->walls, r, err));
-    if (o->first_height > 0 && k->walls->n) r->first_height = o->first_height;
-    r->viscous_length = r->first_height / o->y_plus;
+    r->viscous_length = o->viscous_length > 0 && r->first_height > 0
+                        ? o->viscous_length
+                        : r->first_height;
   } else {
     VG_TRY(vg_volumes_cells(&k->volumes, k->links, err));
   }
@@ -190,7 +191,7 @@ vg_status vg_accuracy_measure(const struct vg_mesh *m,
                               struct vg_error *err)
 {
   assert(m && o && r);
-  assert(o->is_wall && o->y_plus > 0);
+  assert(o->is_wall && o->viscous_length >= 0);
 
   struct vg_accuracy_report got;
   vg_status st = vg_accuracy_measure_with(m, o, 0, &got, err);

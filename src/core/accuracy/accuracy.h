@@ -84,8 +84,8 @@ struct vg_accuracy_reference {
 };
 
 struct vg_accuracy_report {
-  double first_height;      /* median height of the first points, or as given;
-                               0: no walls */
+  double first_height;      /* median height of the first points above walls; 0:
+                               no walls */
   double viscous_length;    /* length of y+ 1 */
   double length, centre[3]; /* diagonal and centre of the walls' bounding box;
                                without walls, of the mesh */
@@ -104,8 +104,7 @@ struct vg_accuracy_report {
 
 struct vg_accuracy_options {
   const uint8_t *is_wall; /* [n_patch] of the mesh */
-  double first_height;    /* > 0: instead of the median of the mesh */
-  double y_plus;          /* y+ of the first height, > 0 */
+  double viscous_length;  /* length of y+ 1; 0: the median first height */
   int threads;            /* 0: one per core */
   int with_reference;     /* 1: compare with structured meshes */
 };

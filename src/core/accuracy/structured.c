@@ -158,9 +158,7 @@ static vg_status compare(const struct vg_accuracy_report *r,
   const size_t levels = above < 1 ? 1
                                   : (size_t)(fmin(above, MOST_LEVELS) + 0.5);
   const struct vg_accuracy_options o = { .is_wall = is_wall,
-                                         .first_height = r->first_height,
-                                         .y_plus = r->first_height /
-                                                   r->viscous_length,
+                                         .viscous_length = r->viscous_length,
                                          .threads = threads };
   struct block b = block_of(r, shape);
   struct vg_mesh m = VG_MESH_INIT;

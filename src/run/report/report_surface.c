@@ -172,6 +172,7 @@ json_t *vg_report_patches_json(const struct vg_mesh *m)
   struct extent *e = patch_extents(m);
   json_t *list = json_array();
 
+  if (!e) vg_json_kept(-1);
   for (size_t i = 0; e && i < m->n_patch; i++) {
     json_t *one = json_pack("{s:i s:o s:o s:o s:I s:f}", "id",
                             (int)m->patch[i].id, "name",

@@ -39,10 +39,19 @@ for name in "tets", "mixed", "hex":
     assert got < 1.3 * plate, (name, got, plate)
 END
 
-# The settings of the call scale y+.
+# The settings of the call scale y+: the height of y+ 1, or the flow.
 vanguard check -q hex/box.b8.ugrid --walls 5 --accuracy --first 4e-4
 exits 0
 says out "wall profile: y+ is 1 at 0.0004; "
+vanguard check -q hex/box.b8.ugrid --walls 5 --accuracy --reynolds 1e5 \
+  --reference-length 1
+exits 0
+cp out flow.txt
+vanguard check -q hex/box.b8.ugrid --walls 5 --accuracy --reynolds 1e6 \
+  --reference-length 1
+exits 0
+[ "$(grep "y+ is 1 at" out)" != "$(grep "y+ is 1 at" flow.txt)" ] ||
+  fail "y+ does not depend on the Reynolds number"
 
 # No walls: functions without walls only. No option: no errors.
 vanguard check -q hex/box.b8.ugrid --accuracy
