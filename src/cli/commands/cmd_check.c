@@ -333,8 +333,7 @@ int vg_cmd_check(int argc, char **argv)
     .doc =
       "Check a volume mesh or a surface. For a volume mesh, report validity, "
       "dihedral angles, radius ratio, histograms and worst cells, with "
-      "--sizes also lengths and shapes in the metric of the sizes, with "
-      "--accuracy also discretisation errors. For a "
+      "--sizes also lengths and shapes in the metric of the sizes. For a "
       "surface, report how 'vanguard mesh' with the same options would "
       "process it: flow domain, patches, repairs, remeshing, and every defect "
       "for which it would be rejected.\v"
