@@ -16,7 +16,7 @@ struct vg_field_scale {
 struct vg_place {
   double x[3];
   double distance;  /* from the nearest wall */
-  double normal[3]; /* direction in which it grows; zero: a sharp edge */
+  double normal[3]; /* direction in which it grows; zero: not defined */
 };
 
 struct vg_field_value {

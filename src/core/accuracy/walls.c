@@ -13,7 +13,8 @@
 #include "core/judge/face_shape.h"
 
 /* Cosine of the largest angle, 20 degrees, between the normals of a triangle
- * and of its corners where a wall is smooth. */
+ * and of its corners where a wall is smooth, and between the interpolated
+ * normal and the direction from the nearest point of the wall. */
 #define SMOOTH 0.94
 
 void vg_wall_search_release(struct vg_wall_search *s)
@@ -204,7 +205,7 @@ void vg_wall_search_ask(const struct vg_wall_search *s, struct vg_place *p)
 {
   struct search f = { s, p->x, INFINITY, UINT32_MAX };
   const uint32_t *v;
-  double w[3];
+  double w[3], to[3];
 
   memset(p->normal, 0, sizeof p->normal);
   vg_box_tree_approach(&s->tree, p->x, enter, leaf, &f);
@@ -215,8 +216,13 @@ void vg_wall_search_ask(const struct vg_wall_search *s, struct vg_place *p)
   v = s->tri[f.tri];
   vg_nearest_weights(p->x, vg_wall_corner(s, v[0]), vg_wall_corner(s, v[1]),
                      vg_wall_corner(s, v[2]), w);
+  memcpy(to, p->x, sizeof to);
   for (int k = 0; k < 3; k++)
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
       p->normal[i] += w[k] * (double)s->normal[f.tri][k][i];
+      to[i] -= w[k] * vg_wall_corner(s, v[k])[i];
+    }
   vg_unit(p->normal);
+  if (!(vg_dot(to, p->normal) >= SMOOTH * p->distance))
+    memset(p->normal, 0, sizeof p->normal);
 }

@@ -43,7 +43,7 @@ static inline const double *vg_wall_corner(const struct vg_wall_search *s,
 /** Distance of p->x from the nearest wall, INFINITY without walls, and its
  * gradient: the normal of the wall at the nearest point, interpolated between
  * the corners of a triangle. The normal is zero if the nearest triangle ends at
- * a sharp edge. Threads: safe. */
+ * a sharp edge, and at positions beyond the rim of the walls. Threads: safe. */
 void vg_wall_search_ask(const struct vg_wall_search *s, struct vg_place *p);
 
 #endif
