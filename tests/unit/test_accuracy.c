@@ -13,7 +13,7 @@
 
 #include "core/accuracy/accuracy.h"
 #include "core/accuracy/analytic.h"
-#include "core/accuracy/volumes.h"
+#include "core/accuracy/walls.h"
 #include "judge_support.h"
 
 enum { TETS, PYRAMIDS, PRISMS, HEXES, KINDS };
@@ -456,6 +456,38 @@ static void threads_do_not_matter(void **state)
   vg_mesh_release(&m);
 }
 
+/* Distance and normal above a plate, on it, and beyond its rim. */
+static void walls_end_at_their_rim(void **state)
+{
+  static const struct {
+    double x[3], distance, normal;
+  } want[3] = { { { 0.33, 0.41, 0.2 }, 0.2, 1 },
+                { { 0.5, 0.25, 0 }, 0, 1 },
+                { { -0.3, 0.5, 0.4 }, 0.5, 0 } };
+  static const uint8_t is_wall[2] = { 1, 0 };
+
+  (void)state;
+  for (int kind = TETS; kind < KINDS; kind++) {
+    struct vg_mesh m = cube_of(kind, 4, 0);
+    struct vg_wall_search s = VG_WALL_SEARCH_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+
+    if (vg_wall_search_open(&s, &m, is_wall, &err) < 0)
+      fail_msg("%s", err.text);
+    for (int i = 0; i < 3; i++) {
+      struct vg_place p;
+
+      memcpy(p.x, want[i].x, sizeof p.x);
+      vg_wall_search_ask(&s, &p);
+      assert_true(fabs(p.distance - want[i].distance) < 1e-15);
+      assert_true(p.normal[0] == 0 && p.normal[1] == 0);
+      assert_true(fabs(p.normal[2] - want[i].normal) < 1e-15);
+    }
+    vg_wall_search_release(&s);
+    vg_mesh_release(&m);
+  }
+}
+
 /* A mesh without a point above a wall has no wall profile. */
 static void walls_may_be_everywhere(void **state)
 {
@@ -489,6 +521,7 @@ int main(void)
     cmocka_unit_test(hexes_on_plate_match_reference),
     cmocka_unit_test(shear_is_slope_of_first_cell),
     cmocka_unit_test(threads_do_not_matter),
+    cmocka_unit_test(walls_end_at_their_rim),
     cmocka_unit_test(walls_may_be_everywhere),
   };
 
