@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "cli/commands/check_accuracy.h"
 #include "cli/commands/check_surface.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
@@ -24,8 +25,9 @@ struct arguments {
   const char *deck, *defects, *against, *vtu;
   const char *sizes; /* NULL: not on the command line */
   struct vg_cli_overrides kept;
-  int *written; /* set to 1 once the report has been printed as JSON */
-  int *missed;  /* set to 1 if a limit on the mesh is not met */
+  int with_accuracy; /* 1: report discretisation errors */
+  int *written;      /* set to 1 once the report has been printed as JSON */
+  int *missed;       /* set to 1 if a limit on the mesh is not met */
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -37,6 +39,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'f': a->defects = arg; return 0;
   case 'a': a->against = arg; return 0;
   case 'v': a->vtu = arg; return 0;
+  case 'A': a->with_accuracy = 1; return 0;
   default: break;
   }
   if (key == vg_cli_option_key("sizes")) a->sizes = arg;
@@ -155,52 +158,83 @@ done:
   return st;
 }
 
+/* The parts of the report of a volume mesh. */
+struct findings {
+  const struct vg_mesh *m;
+  const struct vg_read_info *info;
+  struct vg_mesh_report quality;
+  int has_accuracy;
+  struct vg_accuracy_report accuracy;
+};
+
+static void put_json(const struct arguments *a, const struct vg_problem *p,
+                     const struct findings *f, const struct vg_error *err)
+{
+  const struct vg_mesh_report *r = &f->quality;
+  json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o s:o}", "vanguard",
+                        VG_VERSION, "file", vg_text_json(a->one.file), "ok",
+                        r->is_valid, "cells_turned",
+                        (json_int_t)f->info->turned.cell, "inner_faces",
+                        (json_int_t)f->info->inner.n_face, "size",
+                        vg_report_size_json(f->m), "patches",
+                        vg_report_patches_json(f->m), "mesh",
+                        vg_report_mesh_json(r, f->m), "limits_missed",
+                        vg_report_mesh_limits_json(&p->asked, r));
+
+  if (f->has_accuracy)
+    json_object_set_new(o, "accuracy",
+                        vg_report_accuracy_json(&f->accuracy, f->m));
+  if (!r->is_valid) vg_report_error_json(o, err);
+  print_json(o, a);
+}
+
+static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
+                          const struct findings *f, struct vg_error *err)
+{
+  const struct vg_turned *turned = &f->info->turned;
+  const struct vg_inner_faces *inner = &f->info->inner;
+
+  printf("%s: volume mesh\n", a->one.file);
+  vg_report_size_text(stdout, f->m);
+  if (vg_report_patches_text(stdout, f->m, NULL) < 0)
+    return vg_fail_memory(err, "the patches");
+  if (turned->cell)
+    printf("  cells of negative volume, mirrored on reading: %zu\n",
+           turned->cell);
+  if (inner->n_face)
+    printf("  note: " VG_INNER_FACES_NOTE "\n", a->one.file, inner->n_face,
+           inner->patches);
+  for (size_t i = 0; a->sizes && i < p->notes.n; i++)
+    printf("  note: %s\n", p->notes.text[i]);
+  vg_report_mesh_text(stdout, &f->quality, 1);
+  if (f->has_accuracy) vg_report_accuracy_text(stdout, &f->accuracy, f->m);
+  return VG_OK;
+}
+
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                             const struct vg_mesh *m,
                             const struct vg_read_info *info,
                             struct vg_error *err)
 {
-  const struct vg_turned *turned = &info->turned;
-  const struct vg_inner_faces *inner = &info->inner;
-  struct vg_mesh_report r;
+  struct findings f = { .m = m, .info = info };
+  const struct vg_mesh_report *r = &f.quality;
   struct vg_mesh_limit limit[VG_MESH_LIMITS];
   vg_status st;
 
-  memset(&r, 0, sizeof r);
-  VG_TRY(judge(a, p, m, &r, err));
-  if (!r.is_valid) st = not_valid(a, turned, err);
-  *a->missed = vg_mesh_limits_missed(&p->asked, &r, limit) > 0;
-  if (a->one.json) {
-    json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o s:o}", "vanguard",
-                          VG_VERSION, "file", vg_text_json(a->one.file), "ok",
-                          r.is_valid, "cells_turned", (json_int_t)turned->cell,
-                          "inner_faces", (json_int_t)inner->n_face, "size",
-                          vg_report_size_json(m), "patches",
-                          vg_report_patches_json(m), "mesh",
-                          vg_report_mesh_json(&r, m), "limits_missed",
-                          vg_report_mesh_limits_json(&p->asked, &r));
-
-    if (!r.is_valid) vg_report_error_json(o, err);
-    print_json(o, a);
-  } else {
-    printf("%s: volume mesh\n", a->one.file);
-    vg_report_size_text(stdout, m);
-    if (vg_report_patches_text(stdout, m, NULL) < 0)
-      VG_TRY(vg_fail_memory(err, "the patches"));
-    if (turned->cell)
-      printf("  cells of negative volume, mirrored on reading: %zu\n",
-             turned->cell);
-    if (inner->n_face)
-      printf("  note: " VG_INNER_FACES_NOTE "\n", a->one.file, inner->n_face,
-             inner->patches);
-    for (size_t i = 0; a->sizes && i < p->notes.n; i++)
-      printf("  note: %s\n", p->notes.text[i]);
-    vg_report_mesh_text(stdout, &r, 1);
+  VG_TRY(judge(a, p, m, &f.quality, err));
+  if (a->with_accuracy && r->is_valid) {
+    VG_TRY(vg_check_accuracy(&p->asked, m, &f.accuracy, err));
+    f.has_accuracy = 1;
   }
-  if (a->vtu && r.is_valid) VG_TRY(write_vtu(a, m, err));
+  if (!r->is_valid) st = not_valid(a, &info->turned, err);
+  *a->missed = vg_mesh_limits_missed(&p->asked, r, limit) > 0;
+  if (a->one.json) put_json(a, p, &f, err);
+  else if (put_text(a, p, &f, err) < 0) st = VG_ERR_MEMORY;
+  if (a->vtu && r->is_valid && st >= 0) VG_TRY(write_vtu(a, m, err));
   fflush(stdout);
-  vg_report_mesh_limits_text(stderr, &p->asked, &r);
+  vg_report_mesh_limits_text(stderr, &p->asked, r);
 done:
+  vg_accuracy_release(&f.accuracy);
   return st;
 }
 
@@ -280,6 +314,12 @@ int vg_cmd_check(int argc, char **argv)
       "Write the triangles of a surface with smallest angle, radius ratio "
       "(2 r/R) and distance to this .vtu file, or the cells of a mesh with "
       "non-orthogonality, skewness and orthogonal quality",
+      VG_GROUP_COMMON },
+    { "accuracy", 'A', NULL, 0,
+      "Report the errors of the schemes of solvers on a mesh: gradients, wall "
+      "shear and Laplacian of smooth functions, compared with structured "
+      "meshes; y+ follows from reynolds and reference_length, or is 1 at the "
+      "height first [default of the mesh]",
       VG_GROUP_COMMON },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
       VG_GROUP_COMMON },

@@ -161,9 +161,8 @@ static double inner_determinant(const struct vg_solver_sweep *s, size_t cell)
   return determinant_of((const double(*)[3])a, n);
 }
 
-/* Centre of a cell from its faces. Returns three times its volume. */
-static double middle_of(const struct vg_face_shape *shape, int n_face,
-                        double at[3])
+double vg_faces_middle(const struct vg_face_shape *shape, int n_face,
+                       double at[3])
 {
   double mean[3] = { 0, 0, 0 }, sum[3] = { 0, 0, 0 }, total = 0;
 
@@ -215,7 +214,7 @@ double vg_cell_cosine2(const double (*x)[3], int kind, const uint32_t *node)
 
     vg_face_shape((const double(*)[3])corner, n, &shape[j]);
   }
-  middle_of(shape, f->n_face, at);
+  vg_faces_middle(shape, f->n_face, at);
   return least_cosine2(shape, f->n_face, at);
 }
 
@@ -238,7 +237,7 @@ static void measure_mixed(struct vg_solver_sweep *s, size_t cell)
   }
   s->determinant[cell] = (float)determinant_of((const double(*)[3])area,
                                                n_face);
-  middle->volume = (float)(middle_of(shape, n_face, middle->at) / 3);
+  middle->volume = (float)(vg_faces_middle(shape, n_face, middle->at) / 3);
   s->quality[cell] = (float)least_cosine2(shape, n_face, middle->at);
 }
 

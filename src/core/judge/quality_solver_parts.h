@@ -6,11 +6,8 @@
 
 #include <math.h>
 
+#include "core/judge/face_shape.h"
 #include "core/judge/quality_solver.h"
-
-struct vg_face_shape {
-  double area[3], centre[3];
-};
 
 struct vg_face_figures {
   double cosine, skewness, weight;
@@ -22,9 +19,6 @@ struct vg_face_figures {
 struct vg_face_end {
   double at[3], share;
 };
-
-/** Area vector and centre of a triangle (n 3) or quadrilateral (n 4). */
-void vg_face_shape(const double x[4][3], int n, struct vg_face_shape *out);
 
 /** Figures of a face; the area vector points from the first cell to the second
  * one. */

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 
+#include "core/accuracy/accuracy.h"
 #include "core/domain/planar.h"
 #include "core/fill/fill.h"
 #include "core/flow/flow.h"
@@ -87,6 +88,13 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
 /** @param patches  mesh with the patches to which flat cells refer */
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
                             const struct vg_mesh *patches);
+
+/** Discretisation errors of mesh m; the text lists at most VG_SHOWN_PATCHES
+ * walls. */
+void vg_report_accuracy_text(FILE *to, const struct vg_accuracy_report *r,
+                             const struct vg_mesh *m);
+json_t *vg_report_accuracy_json(const struct vg_accuracy_report *r,
+                                const struct vg_mesh *m);
 
 /** Describe why a mesh is invalid: "3 cells not positive, ...". */
 void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size);
