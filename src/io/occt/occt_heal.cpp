@@ -35,9 +35,10 @@ namespace
 /* A face narrower than this fraction of the model has no area. */
 const double width_least = 1e-9; /* S13 */
 /* Copies of a face may be different splines. Candidates agree in area and
- * centre to these relative tolerances; a grid of points on the face decides. */
+ * centre to these relative tolerances; a grid of points on the face and points
+ * of its edges decide. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
-const int copy_grid = 7;
+const int copy_grid = 7, copy_rim = 5;
 
 struct Measure {
   size_t at; /* index of the face */
@@ -69,13 +70,28 @@ bool lacks_curves(const TopoDS_Face &face)
 
 /* --- faces to drop ------------------------------------------------------- */
 
-/* Does a lie entirely on b, judged by a grid of points? */
+/* Points of the edges of a face. The grid alone does not tell discs apart whose
+ * radii differ a little. */
+void add_rim(const TopoDS_Face &face, std::vector<gp_Pnt> &out)
+{
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+    if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
+    BRepAdaptor_Curve c(TopoDS::Edge(e.Current()));
+    const double from = c.FirstParameter(), to = c.LastParameter();
+
+    for (int i = 0; i < copy_rim; i++)
+      out.push_back(c.Value(from + (to - from) * (i + 0.5) / copy_rim));
+  }
+}
+
+/* Does a lie entirely on b, judged by points inside and on the rim? */
 bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double tolerance)
 {
   std::vector<gp_Pnt> some = samples(a, copy_grid);
   Projector on(b);
 
   if (some.empty()) some.push_back(point_of(a));
+  add_rim(a, some);
   return std::all_of(some.begin(), some.end(), [&](const gp_Pnt &p) {
     return p.Distance(on.nearest(p)) <= tolerance;
   });
@@ -359,13 +375,16 @@ public:
   }
 
   /* Drop the walls and join their solids, unless one solid fills a hollow of
-   * the other, which may be the fluid around it. */
+   * the other, which may be the fluid around it. Copies are kept for the union
+   * of their solids in the first round, since solids that share one whole wall
+   * may share parts of others. */
   void drop(bool again, const Talk &talk)
   {
     for (const Pair &p : pairs_) {
       Face &f = model_.faces[p.i], &g = model_.faces[p.j];
 
       if (f.shape.IsNull() || g.shape.IsNull()) continue;
+      if (!again && p.i != p.j) continue;
       if (fills_hollow(p)) {
         if (p.i != p.j) drop_copy(model_, p.i, p.j, again, talk);
         continue;
