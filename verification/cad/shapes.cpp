@@ -612,14 +612,15 @@ Shape apart(Random &r)
   return s;
 }
 
-/* A solid with a sealed cavity: only its outside is meshed. */
+/* A solid with a large sealed cavity: only its outside is meshed. A box around
+ * something small would be a tunnel. */
 Shape hollow(Random &r)
 {
   Shape s;
 
   s.kind = "hollow";
   s.body = box(-1, -1, -1, r.in(2, 3), 2, r.in(2, 3));
-  s.shape = cut(s.body, BRepPrimAPI_MakeSphere(r.in(0.2, 0.8)).Shape());
+  s.shape = cut(s.body, BRepPrimAPI_MakeSphere(r.in(0.75, 0.95)).Shape());
   return s;
 }
 

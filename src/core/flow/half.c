@@ -112,8 +112,9 @@ static int has_symmetry(const struct vg_mesh *m, const struct vg_flow_cap *cap)
   return cap->n_tri > 0;
 }
 
-/* The cap at the end of axis k that the user names: the one at 0, or else the
- * larger one. */
+/* The cap at an end of axis k that the user names: the one at 0; or that at the
+ * end next to 0, since the other one is a tip; or, if the body is on both sides
+ * of 0, the larger one. */
 static vg_status find_given(const struct vg_mesh *m, int k,
                             struct vg_flow_cap *cap, int *found,
                             struct vg_error *err)
@@ -129,6 +130,7 @@ static vg_status find_given(const struct vg_mesh *m, int k,
     int half;
 
     cap->at = end ? b.hi[k] : b.lo[k];
+    if (end ? b.lo[k] >= -wide : b.hi[k] <= wide) continue;
     mark_cap(m, near, wide, 0, cap);
     if (!cap->n_tri) continue;
     VG_TRY(is_half(m, cap, wide, 1, &half, err));
