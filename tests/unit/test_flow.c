@@ -720,7 +720,7 @@ static const double square[4][2] = {
 };
 
 /* The root of a swept wing is one in x = 0 as in y = 0. Bases with a hole, ends
- * of long bars, and feet are none. */
+ * of long bars, and feet are not reported. */
 static void only_roots_are_reported(void **state)
 {
   (void)state;

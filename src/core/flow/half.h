@@ -27,8 +27,8 @@ struct vg_flow_cap {
  * or name, or else one at coordinate 0 that looks like a root.
  *
  * @param half          VG_HALF_X to _Z: only a cap normal to this axis, at any
- *                      coordinate, but not the tip of a body beside 0. It may
- * be uneven or inclined by VG_ROOT_OFF.
+ *                      coordinate, but not the tip of a body on one side of 0.
+ * It may be uneven or inclined by VG_ROOT_OFF.
  * @param by_condition  out: 1 if the cap has a symmetry condition or name
  * O(n), plus the cost of the border of the cap. */
 vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,

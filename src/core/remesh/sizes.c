@@ -11,9 +11,6 @@
 #include "core/remesh/metric.h"
 #include "core/remesh/strips.h"
 
-/* S88: edges around a circle, relative to those on a face: the chords around a
- * flat patch lose its area. */
-#define CURVE_TURN 1.15
 #define SMOOTH 2 /* sweeps that average curvature over neighbours */
 #define AROUND 3 /* S36: rings of triangles around a closed strip */
 /* S76: least number of points at which a field is sampled. */
@@ -209,9 +206,8 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
       /* A jag smaller than the tolerance is not an arc. */
       if (angle * fmin(lu, lv) < o->chord) continue;
       r->size[c->point[k]] = fmin(r->size[c->point[k]],
-                                  arc_size(r, o,
-                                           CURVE_TURN * 2 * angle / (lu + lv),
-                                           far, c->point[k]));
+                                  arc_size(r, o, 2 * angle / (lu + lv), far,
+                                           c->point[k]));
     }
 }
 

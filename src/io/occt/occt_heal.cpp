@@ -37,7 +37,8 @@ const double width_least = 1e-9; /* S13 */
 /* Copies of a face may be different splines. Candidates agree in area and
  * centre to these relative tolerances; a grid of points on the face and points
  * of its edges decide. */
-const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
+const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4,
+             rim_near = 1e-3;
 const int copy_grid = 7, copy_rim = 5;
 
 struct Measure {
@@ -84,17 +85,21 @@ void add_rim(const TopoDS_Face &face, std::vector<gp_Pnt> &out)
   }
 }
 
-/* Does a lie entirely on b, judged by points inside and on the rim? */
-bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double tolerance)
+/* Does a lie entirely on b, judged by points inside and, less sharply, on the
+ * rim? */
+bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double size)
 {
-  std::vector<gp_Pnt> some = samples(a, copy_grid);
+  std::vector<gp_Pnt> some = samples(a, copy_grid), rim;
   Projector on(b);
+  auto all = [&](const std::vector<gp_Pnt> &list, double tolerance) {
+    return std::all_of(list.begin(), list.end(), [&](const gp_Pnt &p) {
+      return p.Distance(on.nearest(p)) <= tolerance;
+    });
+  };
 
   if (some.empty()) some.push_back(point_of(a));
-  add_rim(a, some);
-  return std::all_of(some.begin(), some.end(), [&](const gp_Pnt &p) {
-    return p.Distance(on.nearest(p)) <= tolerance;
-  });
+  add_rim(a, rim);
+  return all(some, copy_near * size) && all(rim, rim_near * size);
 }
 
 bool are_copies(const Model &model, const Measure &a, const Measure &b)
@@ -104,7 +109,7 @@ bool are_copies(const Model &model, const Measure &a, const Measure &b)
 
   return std::fabs(a.area - b.area) <= area_near * a.area &&
          a.centre.Distance(b.centre) <= centre_near * size &&
-         lies_on(f, g, copy_near * size) && lies_on(g, f, copy_near * size);
+         lies_on(f, g, size) && lies_on(g, f, size);
 }
 
 /* Normal of a face at its nearest point to p, oriented as the face. */
@@ -375,16 +380,13 @@ public:
   }
 
   /* Drop the walls and join their solids, unless one solid fills a hollow of
-   * the other, which may be the fluid around it. Copies are kept for the union
-   * of their solids in the first round, since solids that share one whole wall
-   * may share parts of others. */
+   * the other, which may be the fluid around it. */
   void drop(bool again, const Talk &talk)
   {
     for (const Pair &p : pairs_) {
       Face &f = model_.faces[p.i], &g = model_.faces[p.j];
 
       if (f.shape.IsNull() || g.shape.IsNull()) continue;
-      if (!again && p.i != p.j) continue;
       if (fills_hollow(p)) {
         if (p.i != p.j) drop_copy(model_, p.i, p.j, again, talk);
         continue;
