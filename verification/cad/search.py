@@ -109,12 +109,12 @@ def judge(shape, path, asked):
         status, out, messages, cpu = run(command + answer.split(), asked.cpu)
     result = {**shape, "cpu": round(cpu, 2), "status": status, "faults": [],
               "message": ""}
-    if status == 0:
+    if status == -signal.SIGXCPU or cpu >= asked.cpu:
+        result["faults"] = ["no end in %d s" % asked.cpu]
+    elif status == 0:
         result["faults"] = faults_of(shape, json.loads(out))
     elif status == 1:
         result["message"] = last_message(messages)
-    elif status == -signal.SIGXCPU or cpu >= asked.cpu:
-        result["faults"] = ["no end in %d s" % asked.cpu]
     else:
         result["faults"] = ["status %d" % status]
         result["message"] = last_message(messages)
