@@ -264,7 +264,10 @@ static void solids_that_touch_are_united(void **state)
     { FILE_OF("stacked.brep"), 10, 8, "face 6 and face 11 at" },
     { FILE_OF("glued.brep"), 10, 8, "face 6 at (0.5, 1, 3) is a wall" },
     { FILE_OF("leaning.brep"), 11, 8, "2 solids touch or overlap" },
-    { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" }
+    { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" },
+    /* cylinders with radii of 1 and 0.997 */
+    { FILE_OF("stages.brep"), 5, M_PI * (1 + 0.997 * 0.997),
+      "2 solids touch or overlap" }
   };
 
   (void)state;

@@ -668,6 +668,133 @@ static void a_cap_is_reported_or_removed(void **state)
   assert_int_equal(a.st, VG_ERR_INPUT);
 }
 
+/* A prism along y over a convex outline in x and z, sheared along x; or a ring,
+ * whose hole is a smaller copy of the outline. Normals outward. */
+static void add_prism(struct vg_mesh *m, int n, const double (*outline)[2],
+                      double shear, double length, double hole)
+{
+  const uint32_t p = patch_of(m, "", VG_BC_NONE);
+  const int n_loop = hole > 0 ? 4 : 2;
+  const uint32_t k = (uint32_t)n, first = (uint32_t)m->n_point;
+
+  m->point = realloc(m->point, (m->n_point + 4 * k) * sizeof *m->point);
+  m->tri = realloc(m->tri, (m->n_tri + 8 * k) * sizeof *m->tri);
+  m->tri_patch = realloc(m->tri_patch,
+                         (m->n_tri + 8 * k) * sizeof *m->tri_patch);
+  assert_true(m->point && m->tri && m->tri_patch);
+  for (int loop = 0; loop < n_loop; loop++) /* root, tip, tip and root inside */
+    for (int i = 0; i < n; i++) {
+      const double f = loop > 1 ? hole : 1, y = loop % 3 ? length : 0;
+      double *x = m->point[m->n_point++];
+
+      x[0] = f * outline[i][0] + shear * y;
+      x[1] = y;
+      x[2] = f * outline[i][1];
+    }
+  for (uint32_t i = 0; i < k; i++)
+    for (uint32_t loop = 0; loop < (hole > 0 ? 4 : 1); loop++) {
+      const uint32_t j = (i + 1) % k, b = (loop + 1) % (uint32_t)n_loop * k;
+      const uint32_t v[4] = { first + loop * k + i, first + loop * k + j,
+                              first + b + j, first + b + i };
+      const uint32_t t[2][3] = { { v[0], v[2], v[1] }, { v[0], v[3], v[2] } };
+
+      memcpy(m->tri[m->n_tri], t, sizeof t);
+      m->n_tri += 2;
+    }
+  for (uint32_t i = 1; i + 1 < k && !(hole > 0); i++) {
+    const uint32_t t[2][3] = { { first, first + i, first + i + 1 },
+                               { first + k, first + k + i + 1,
+                                 first + k + i } };
+
+    memcpy(m->tri[m->n_tri], t, sizeof t);
+    m->n_tri += 2;
+  }
+  for (size_t t = 0; t < m->n_tri; t++) m->tri_patch[t] = p;
+}
+
+static const double aerofoil[4][2] = {
+  { 0, 0 }, { 0.3, -0.1 }, { 1, 0 }, { 0.3, 0.1 }
+};
+static const double square[4][2] = {
+  { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 }
+};
+
+/* The root of a swept wing is one in x = 0 as in y = 0. Bases with a hole, ends
+ * of long bars, and feet are not reported. */
+static void only_roots_are_reported(void **state)
+{
+  (void)state;
+  for (int way = 0; way < 5; way++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct answer a;
+
+    if (way < 2) add_prism(&m, 4, aerofoil, 1, 3, 0);
+    if (way == 2) add_prism(&m, 4, square, 0, 1, 0.1);
+    if (way == 3) add_prism(&m, 4, square, 0, 9, 0);
+    if (way == 4) {
+      const double lo[3] = { -9, 1, -9 }, hi[3] = { 9, 2, 9 };
+
+      add_prism(&m, 4, square, 0, 0.5, 0);
+      add_box(&m, lo, hi, -1, bare, NULL);
+    }
+    for (size_t i = 0; i < m.n_point && way == 1; i++) {
+      const double x = m.point[i][0];
+
+      m.point[i][0] = m.point[i][1];
+      m.point[i][1] = m.point[i][2];
+      m.point[i][2] = x + 1;
+    }
+    a = ask(&m);
+    is_kind(&a, VG_FLOW_EXTERNAL);
+    assert_int_equal(a.flow.cap_axis, way > 1 ? -1 : !way);
+  }
+}
+
+/* The root of a swept wing is less than half as wide as the wing. A root that
+ * is not quite plane is moved into its plane, but only on demand. */
+static void a_given_root_is_removed(void **state)
+{
+  struct vg_flow_options o = plain;
+
+  (void)state;
+  for (int uneven = 0; uneven < 2; uneven++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct answer a;
+
+    o.half = VG_HALF_Y;
+    add_prism(&m, 4, aerofoil, 1, 3, 0);
+    if (uneven) m.point[1][1] = 2e-3;
+    a = ask_with(&m, &o);
+    is_kind(&a, VG_FLOW_EXTERNAL);
+    assert_true(a.flow.axis == 1 && a.flow.at == 0 && a.flow.n_cap_tri == 2);
+    assert_true(fabs(a.flow.root_off - 2e-3 * uneven) < 1e-12);
+    m = (struct vg_mesh)VG_MESH_INIT;
+    add_prism(&m, 4, aerofoil, 1, 3, 0);
+    m.point[1][1] = 0.05; /* too far */
+    a = ask_with(&m, &o);
+    assert_int_equal(a.st, VG_ERR_INPUT);
+  }
+}
+
+/* The eight corners of a tube that is not along the axes are on one sphere. */
+static void a_turned_tube_is_a_body(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct answer a;
+
+  (void)state;
+  add_prism(&m, 4, square, 0, 3, 0.98);
+  for (size_t i = 0; i < m.n_point; i++) {
+    const double x = m.point[i][0], y = m.point[i][1], z = m.point[i][2];
+
+    m.point[i][0] = 0.6 * x + 0.8 * y;
+    m.point[i][1] = -0.64 * x + 0.48 * y + 0.6 * z;
+    m.point[i][2] = 0.48 * x - 0.36 * y + 0.8 * z;
+  }
+  a = ask(&m);
+  is_kind(&a, VG_FLOW_EXTERNAL);
+}
+
 /* The symmetry plane of a whole domain is kept. */
 static void a_symmetry_plane_of_a_domain_stays(void **state)
 {
@@ -793,6 +920,9 @@ int main(void)
     cmocka_unit_test(a_half_domain_is_internal),
     cmocka_unit_test(half_a_ball_around_half_a_body),
     cmocka_unit_test(a_cap_is_reported_or_removed),
+    cmocka_unit_test(only_roots_are_reported),
+    cmocka_unit_test(a_given_root_is_removed),
+    cmocka_unit_test(a_turned_tube_is_a_body),
     cmocka_unit_test(a_symmetry_plane_of_a_domain_stays),
     cmocka_unit_test(open_tubes_are_not_decided),
     cmocka_unit_test(random_surfaces_are_read_or_refused),

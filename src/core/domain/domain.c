@@ -58,10 +58,8 @@ static void open_range(const struct domain *d, int k, double *lo, double *hi)
 
 /* Coordinate axis across which the open edges are flat and the body is on one
  * side; -1 if no axis fits. */
-static int symmetry_axis(const struct domain *d)
+static int symmetry_axis(const struct domain *d, double tol)
 {
-  const double tol = VG_PLANE_TOLERANCE * d->length;
-
   for (int i = 0; i < 3; i++) {
     const int k = (i + 1) % 3; /* y first: the most common */
     double lo, hi;
@@ -93,24 +91,76 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
                  "xyz"[d->axis], d -> at);
 }
 
+/* Does no point of the body other than those of open edges, each of which
+ * begins one edge, lie beyond 0? */
+static int is_clear_of_zero(const struct domain *d)
+{
+  const int k = d->axis, above = d->hi[k] > -d->lo[k];
+  size_t n = 0, n_open = 0;
+
+  for (size_t i = 0; i < d->m.n_point; i++)
+    n += above ? d->m.point[i][k] < 0 : d->m.point[i][k] > 0;
+  for (size_t i = 0; i < d->open.n; i++) {
+    const double x = d->m.point[d->open.edge[i][0]][k];
+
+    n_open += above ? x < 0 : x > 0;
+  }
+  return n <= n_open;
+}
+
 /* Set the plane of the open edges: axis (-1 if they are not in a plane) and
  * at. */
-static void find_plane(struct domain *d)
+static void find_plane(struct domain *d, int symmetry)
 {
   const double tol = VG_PLANE_TOLERANCE * d->length;
-  double hi;
+  const double wide = VG_ROOT_OFF * d->length;
+  double lo, hi;
 
-  d->axis = d->open.n ? symmetry_axis(d) : -1;
+  d->axis = d->open.n ? symmetry_axis(d, tol) : -1;
+  if (d->open.n && d->axis < 0 && symmetry > 1)
+    d->axis = symmetry_axis(d, wide);
   if (d->axis < 0) return;
-  open_range(d, d->axis, &d->at, &hi);
-  if (fabs(d->at) <= tol && fabs(hi) <= tol) d->at = 0;
+  open_range(d, d->axis, &lo, &hi);
+  d->at = hi - lo > tol && d->hi[d->axis] - hi < lo - d->lo[d->axis] ? hi : lo;
+  if ((fabs(lo) <= tol && fabs(hi) <= tol) ||
+      (symmetry > 1 && fabs(lo) <= wide && fabs(hi) <= wide &&
+       is_clear_of_zero(d)))
+    d->at = 0;
+}
+
+/* Move the points of open edges into the plane. Returns the largest distance.
+ */
+static double flatten(struct vg_mesh *m, const struct vg_border *open, int axis,
+                      double at)
+{
+  double off = 0;
+
+  for (size_t i = 0; i < 2 * open->n; i++) {
+    double *x = m->point[open->edge[i / 2][i % 2]];
+
+    off = fmax(off, fabs(x[axis] - at));
+    x[axis] = at;
+  }
+  return off;
+}
+
+vg_status vg_domain_flatten(struct vg_mesh *surface, int axis, double at,
+                            double *off, struct vg_error *err)
+{
+  struct vg_border open = VG_BORDER_INIT;
+  vg_status st = vg_open_edges(surface, &open, err);
+
+  assert(axis >= 0 && axis < 3 && off);
+  if (st >= 0) *off = flatten(surface, &open, axis, at);
+  vg_border_release(&open);
+  return st;
 }
 
 static vg_status find_symmetry(struct domain *d, struct vg_error *err)
 {
   const double *x;
 
-  find_plane(d);
+  find_plane(d, d->farfield->symmetry);
   if (!d->open.n) return VG_OK;
   x = d->m.point[d->open.edge[0][0]];
   if (d->axis < 0)
@@ -126,8 +176,7 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
        !vg_is_symmetry(&d->m, &d->open, d->axis, d->at)))
     return refuse_hole(d, err);
   d->side = d->hi[d->axis] - d->at > d->at - d->lo[d->axis];
-  for (size_t i = 0; i < 2 * d->open.n; i++)
-    d->m.point[d->open.edge[i / 2][i % 2]][d->axis] = d->at;
+  flatten(&d->m, &d->open, d->axis, d->at);
   for (size_t i = 0; i < d->m.n_point; i++) {
     x = d->m.point[i];
     if (d->side ? x[d->axis] < d->at : x[d->axis] > d->at)
@@ -386,14 +435,14 @@ void vg_domain_bounds(const struct vg_mesh *surface,
 vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry, int *axis,
                          double *at, struct vg_error *err)
 {
-  assert(symmetry >= -1 && symmetry <= 1 && axis && at);
+  assert(symmetry >= -1 && symmetry <= 2 && axis && at);
 
   struct domain d = { .m = *surface };
   vg_status st;
 
   measure(&d);
   VG_TRY(vg_open_edges(&d.m, &d.open, err));
-  find_plane(&d);
+  find_plane(&d, symmetry);
   *at = d.at;
   *axis = d.axis;
   if (symmetry < 0 || (!symmetry && d.axis >= 0 &&

@@ -85,7 +85,9 @@ struct vg_farfield {
   int has_box;
   int symmetry;        /* Meaning of open edges in one plane. 0: the cut of a
                           half body if they look like one (symmetry.h), else a
-                          hole; 1: the cut of a half body; -1: a hole. */
+                          hole; 1: the cut of a half body; 2: that, and it may
+                          deviate from the plane by VG_ROOT_OFF of the body
+                          length; -1: a hole. */
   double spacing;      /* Edge length on the farfield; 0: from the growth of the
                           sizing field. */
   struct vg_stop stop; /* Polled regularly. */
@@ -109,15 +111,31 @@ struct vg_domain_report {
   size_t n_added_tri;
 };
 
+/* Of the body length: open edges of a given half model this near to a plane are
+ * those of an uneven root, whose plane is at 0 or touches the outermost of
+ * them. */
+#define VG_ROOT_OFF 1e-3 /* S87 */
+
 /** Is the surface a half model: are all its open edges in a coordinate plane
  * x[*axis] = *at at an end of it? The cost is that of sorting the edges.
  *
  * @param symmetry  as in vg_farfield: 0 also requires that the opening looks
  *                  like the cut of a symmetric body (core/domain/symmetry.h);
- *                  1: it is the cut; -1: it is not
+ *                  1, 2: it is the cut; -1: it is not
  * @param axis      out: -1 if the surface is not a half model */
 vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry, int *axis,
                          double *at, struct vg_error *err);
+
+/** Move the points of open edges into the plane x[axis] = at. off: out, the
+ * largest distance. */
+vg_status vg_domain_flatten(struct vg_mesh *surface, int axis, double at,
+                            double *off, struct vg_error *err);
+
+/** Does the surface meet the plane x[axis] = at steeply along most of its edges
+ * there, as where a body continues into its mirror image? 0 if no edge is
+ * within the tolerance. */
+int vg_domain_is_steep(const struct vg_mesh *m, int axis, double at,
+                       double tolerance);
 
 /** A closed loop of open edges. */
 struct vg_rim {

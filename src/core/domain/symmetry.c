@@ -33,8 +33,8 @@ static double in_plane(const struct vg_mesh *m, const uint32_t *t, int axis,
   return sum;
 }
 
-static int meets_steeply(const struct vg_mesh *m, int axis, double at,
-                         double tolerance)
+int vg_domain_is_steep(const struct vg_mesh *m, int axis, double at,
+                       double tolerance)
 {
   double sum = 0, steep = 0;
 
@@ -75,5 +75,5 @@ int vg_is_symmetry(const struct vg_mesh *m, const struct vg_border *open,
   return width >= SPAN * (hi[along] - lo[along]) &&
          (hi[axis] - lo[axis] <= DEEP * width ||
           (axis && fabs(at) <= NEAR_ZERO * length)) &&
-         meets_steeply(m, axis, at, VG_PLANE_TOLERANCE * length);
+         vg_domain_is_steep(m, axis, at, VG_PLANE_TOLERANCE * length);
 }

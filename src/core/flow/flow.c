@@ -122,12 +122,32 @@ static int has_rims(const struct vg_surface_report *r)
          !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
 }
 
+/* Move the rim of a half model into its plane. */
+static vg_status flatten_root(struct settle *s, struct vg_error *err)
+{
+  double lo[3], hi[3], length = 0, off;
+  vg_status st;
+
+  vg_mesh_bounds(s->m, lo, hi);
+  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
+  VG_TRY(vg_domain_flatten(s->m, s->out.axis, s->out.at, &off, err));
+  if (off <= VG_HALF_NEAR * length) goto done;
+  s->out.root_off = off;
+  tell(&s->out,
+       "the root is up to %.3g off the plane %c = %g (%.2g of the length of "
+       "the body) and was moved into it",
+       off, "xyz"[s->out.axis], s -> out.at, off / length);
+done:
+  return st;
+}
+
 /* An open surface may be a half model. */
 static vg_status look_for_rims(struct settle *s, struct vg_error *err)
 {
   const enum vg_flow_half half = s->o->half;
   const int symmetry = half == VG_HALF_AUTO && !s->out.n_cap_tri ? 0
                      : half == VG_HALF_NO                        ? -1
+                     : half >= VG_HALF_X                         ? 2
                                                                  : 1;
   int axis;
   double at;
@@ -145,6 +165,7 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   }
   s->out.axis = axis;
   s->out.at = at;
+  if (symmetry > 1) VG_TRY(flatten_root(s, err));
   if (!s->out.n_cap_tri)
     tell(&s->out,
          "all %zu open edges lie in the plane %c = %g at an end of "

@@ -80,6 +80,8 @@ struct vg_flow {
   int axis;                 /* Half model: axis of its symmetry plane; -1: whole
                                model. */
   double at;                /* Coordinate of that plane. */
+  double root_off;          /* Largest distance by which points of the root were
+                               moved into that plane; 0: it was flat. */
   size_t n_body;            /* Closed (or cut) bodies in the fluid. */
   size_t n_outer;           /* Outer boundaries: the number of fluid regions. */
   size_t n_cavity;          /* Sealed cavities that were dropped. */
@@ -106,7 +108,8 @@ void vg_flow_release(struct vg_flow *f);
  * point into the fluid, sealed cavities and the cap of a half model are
  * removed.
  *
- * @param m  triangles; on success only dropped and turned
+ * @param m  triangles; on success only dropped and turned, and the points of
+ *           the root of a half model moved into its plane
  * @param r  in: report of vg_surface_check on m with `external` -1; out: report
  *           on the changed m
  * A surface with open rims that are not those of a half model, or with other

@@ -10,8 +10,8 @@
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 
-#define NEAR 1e-5 /* S5: of the length: points this near are in a plane */
 #define ZERO 1e-3 /* F4: of the length: a plane this near is at 0 */
+#define FLAT 0.9  /* cosine of 26 degrees: inclination of an uneven root */
 
 void vg_flow_cap_release(struct vg_flow_cap *cap)
 {
@@ -34,24 +34,30 @@ static struct box box_of(const struct vg_mesh *m)
   return b;
 }
 
+/* Is the triangle in the plane? Points of a triangle that is nearly parallel to
+ * it may be as far away as `wide`. */
 static int is_in_plane(const struct vg_mesh *m, size_t t, int axis, double at,
-                       double near)
+                       double near, double wide)
 {
-  for (int k = 0; k < 3; k++)
-    if (fabs(m->point[m->tri[t][k]][axis] - at) > near) return 0;
-  return 1;
+  const uint32_t *v = m->tri[t];
+  double off = 0, u[3], w[3], n[3];
+
+  for (int k = 0; k < 3; k++) off = fmax(off, fabs(m->point[v[k]][axis] - at));
+  if (off <= near || off > wide) return off <= near;
+  vg_sub(m->point[v[1]], m->point[v[0]], u);
+  vg_sub(m->point[v[2]], m->point[v[0]], w);
+  vg_cross(u, w, n);
+  return fabs(n[axis]) >= FLAT * vg_norm(n);
 }
 
-/* Mark the triangles in the plane; with symmetry_only, only those of symmetry
- * planes. */
-static void mark_cap(const struct vg_mesh *m, int axis, double at, double near,
+/* Mark the triangles in the plane of the cap, as is_in_plane; with
+ * symmetry_only, only those of symmetry planes. */
+static void mark_cap(const struct vg_mesh *m, double near, double wide,
                      int symmetry_only, struct vg_flow_cap *cap)
 {
-  cap->axis = axis;
-  cap->at = at;
   cap->n_tri = 0;
   for (size_t t = 0; t < m->n_tri; t++) {
-    cap->tri[t] = is_in_plane(m, t, axis, at, near) &&
+    cap->tri[t] = is_in_plane(m, t, cap->axis, cap->at, near, wide) &&
                   (!symmetry_only ||
                    vg_flow_role_of(&m->patch[m->tri_patch[t]]) ==
                      VG_ROLE_SYMMETRY);
@@ -77,19 +83,20 @@ static vg_status without_cap(const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Does the surface meet the plane of the cap like half of a symmetric body? */
+/* Does the surface continue steeply from the plane of the cap? And does the cap
+ * look like a root, unless the user says so? */
 static vg_status is_half(const struct vg_mesh *m, const struct vg_flow_cap *cap,
-                         int *half, struct vg_error *err)
+                         double near, int is_given, int *half,
+                         struct vg_error *err)
 {
   struct vg_mesh open = VG_MESH_INIT;
-  int axis = -1;
-  double at;
   vg_status st;
 
   *half = 0;
   VG_TRY(without_cap(m, cap, &open, err));
-  if (open.n_tri) VG_TRY(vg_domain_half(&open, 0, &axis, &at, err));
-  *half = axis == cap->axis;
+  *half = vg_domain_is_steep(&open, cap->axis, cap->at, near);
+  if (*half && !is_given)
+    VG_TRY(vg_flow_looks_like_root(m, &open, cap, half, err));
 done:
   vg_mesh_release(&open);
   return st;
@@ -105,6 +112,45 @@ static int has_symmetry(const struct vg_mesh *m, const struct vg_flow_cap *cap)
   return cap->n_tri > 0;
 }
 
+/* The cap at an end of axis k that the user names: the one at 0; or that at the
+ * end next to 0, since the other one is a tip; or, if the body is on both sides
+ * of 0, the larger one. */
+static vg_status find_given(const struct vg_mesh *m, int k,
+                            struct vg_flow_cap *cap, int *found,
+                            struct vg_error *err)
+{
+  const struct box b = box_of(m);
+  const double near = VG_HALF_NEAR * b.length, wide = VG_ROOT_OFF * b.length;
+  double best = -1, at = 0;
+  vg_status st = VG_OK;
+
+  cap->axis = k;
+  for (int end = 0; end < 2; end++) {
+    double area = 0;
+    int half;
+
+    cap->at = end ? b.hi[k] : b.lo[k];
+    if (end ? b.lo[k] >= -wide : b.hi[k] <= wide) continue;
+    mark_cap(m, near, wide, 0, cap);
+    if (!cap->n_tri) continue;
+    VG_TRY(is_half(m, cap, wide, 1, &half, err));
+    for (size_t t = 0; t < m->n_tri && half; t++)
+      if (cap->tri[t])
+        area += vg_triangle_area(m->point[m->tri[t][0]], m->point[m->tri[t][1]],
+                                 m->point[m->tri[t][2]]);
+    if (area > 0 && fabs(cap->at) <= wide) area = INFINITY;
+    if (!half || area <= best) continue;
+    best = area;
+    at = cap->at;
+  }
+  *found = best > 0;
+  cap->at = at;
+  if (*found) mark_cap(m, near, wide, 0, cap);
+  if (fabs(at) <= near) cap->at = 0;
+done:
+  return st;
+}
+
 vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
                            struct vg_flow_cap *cap, int *by_condition,
                            struct vg_error *err)
@@ -112,7 +158,7 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
   assert(cap && by_condition);
 
   const struct box b = box_of(m);
-  const double near = NEAR * b.length;
+  const double near = VG_HALF_NEAR * b.length;
   int found = 0;
   vg_status st = VG_OK;
 
@@ -122,17 +168,21 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
   for (int pass = 0; pass < 2 && !found; pass++)
     for (int end = 0; end < 6 && !found; end++) {
       const int axis = (end / 2 + 1) % 3; /* y first: the most common */
-      double at = end % 2 ? b.hi[axis] : b.lo[axis];
 
-      if (fabs(at) <= near) at = 0;
-      if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) continue;
-      if (pass && half < VG_HALF_X && fabs(at) > ZERO * b.length) continue;
+      if (half >= VG_HALF_X && (pass || axis != (int)half - VG_HALF_X))
+        continue;
+      cap->axis = axis;
+      cap->at = end % 2 ? b.hi[axis] : b.lo[axis];
+      if (fabs(cap->at) <= near) cap->at = 0;
+      if (pass && fabs(cap->at) > ZERO * b.length) continue;
       if (!(b.hi[axis] - b.lo[axis] > 4 * near)) continue;
-      mark_cap(m, axis, at, near, !pass, cap);
+      mark_cap(m, near, near, !pass, cap);
       if (!cap->n_tri) continue;
       if (!pass) found = *by_condition = has_symmetry(m, cap);
-      else VG_TRY(is_half(m, cap, &found, err));
+      else VG_TRY(is_half(m, cap, near, 0, &found, err));
     }
+  if (!found && half >= VG_HALF_X)
+    VG_TRY(find_given(m, (int)half - VG_HALF_X, cap, &found, err));
 done:
   if (!found) vg_flow_cap_release(cap);
   return st;
@@ -143,7 +193,7 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
 {
   assert(axis >= 0 && axis < 3 && !out->point && !out->tri);
 
-  const double near = NEAR * box_of(m).length;
+  const double near = VG_HALF_NEAR * box_of(m).length;
   const size_t n = m->n_point;
   uint32_t *image = vg_alloc(n, sizeof *image);
   vg_status st = image ? VG_OK : vg_fail_memory(err, "the mirror image");

@@ -12,6 +12,9 @@
 
 #include "core/flow/flow.h"
 
+/** Of the length of the body: points this near are in a plane. */
+#define VG_HALF_NEAR 1e-5 /* S5 */
+
 /** A flat cap in a coordinate plane at an end of the surface. */
 struct vg_flow_cap {
   int axis; /* -1: no cap was found. */
@@ -21,15 +24,26 @@ struct vg_flow_cap {
 };
 
 /** Find the cap that may close a half model: the cap with a symmetry condition
- * or name, or else one at coordinate 0 whose plane the surface meets steeply.
+ * or name, or else one at coordinate 0 that looks like a root.
  *
  * @param half          VG_HALF_X to _Z: only a cap normal to this axis, at any
- *                      coordinate
+ *                      coordinate, but not the tip of a body on one side of 0.
+ * It may be uneven or inclined by VG_ROOT_OFF.
  * @param by_condition  out: 1 if the cap has a symmetry condition or name
  * O(n), plus the cost of the border of the cap. */
 vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
                            struct vg_flow_cap *cap, int *by_condition,
                            struct vg_error *err);
+
+/** Does the cap look like the root of half a body? It has no hole and is not
+ * small. Its front and rear differ, or it spans half of the body, which is not
+ * much deeper than the cap is wide.
+ *
+ * @param open  m without the cap, with the same points */
+vg_status vg_flow_looks_like_root(const struct vg_mesh *m,
+                                  const struct vg_mesh *open,
+                                  const struct vg_flow_cap *cap, int *is_root,
+                                  struct vg_error *err);
 
 void vg_flow_cap_release(struct vg_flow_cap *cap);
 

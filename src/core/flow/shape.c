@@ -17,6 +17,7 @@
 #define BOX_NEAR                                                               \
   1e-4             /* of its length: points this near are on the bounding box */
 #define ROUND 0.02 /* of a sphere's radius: points this near are on it */
+#define ARC 1      /* of a sphere's radius: no edge on it is longer */
 #define DEEP 1e-3  /* of the length: least depth of a body inside */
 
 /* Copy one shell to a mesh of its own. */
@@ -166,17 +167,32 @@ static int fit_sphere(struct hull *h)
   return rr > 0;
 }
 
+/* Do the triangles follow the sphere? The corners of any cuboid, prism or
+ * cylinder are on one sphere, too, but their triangles have longer edges. */
+static int follows_sphere(const struct hull *h, size_t t)
+{
+  const uint32_t *v = h->m->tri[t];
+
+  if ((h->outer && !h->outer[t]) || is_on_side(h, t)) return 1;
+  for (int k = 0; k < 3; k++) {
+    const double *x = h->m->point[v[k]], *y = h->m->point[v[(k + 1) % 3]];
+
+    if (vg_distance(x, y) > ARC * h->radius) return 0;
+    if (is_free(h, t, k) &&
+        fabs(vg_distance(x, h->centre) - h->radius) > ROUND * h->radius)
+      return 0;
+  }
+  return 1;
+}
+
 static int is_round(struct hull *h)
 {
   if (!fit_sphere(h)) return 0;
   for (size_t t = 0; t < h->m->n_tri; t++)
-    for (int k = 0; k < 3; k++)
-      if (is_free(h, t, k) &&
-          fabs(vg_distance(h->m->point[h->m->tri[t][k]], h->centre) -
-               h->radius) > ROUND * h->radius) {
-        h->radius = 0;
-        return 0;
-      }
+    if (!follows_sphere(h, t)) {
+      h->radius = 0;
+      return 0;
+    }
   return 1;
 }
 

@@ -35,9 +35,11 @@ namespace
 /* A face narrower than this fraction of the model has no area. */
 const double width_least = 1e-9; /* S13 */
 /* Copies of a face may be different splines. Candidates agree in area and
- * centre to these relative tolerances; a grid of points on the face decides. */
-const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
-const int copy_grid = 7;
+ * centre to these relative tolerances; a grid of points on the face and points
+ * of its edges decide. */
+const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4,
+             rim_near = 1e-3;
+const int copy_grid = 7, copy_rim = 5;
 
 struct Measure {
   size_t at; /* index of the face */
@@ -69,16 +71,35 @@ bool lacks_curves(const TopoDS_Face &face)
 
 /* --- faces to drop ------------------------------------------------------- */
 
-/* Does a lie entirely on b, judged by a grid of points? */
-bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double tolerance)
+/* Points of the edges of a face. The grid alone does not tell discs apart whose
+ * radii differ a little. */
+void add_rim(const TopoDS_Face &face, std::vector<gp_Pnt> &out)
 {
-  std::vector<gp_Pnt> some = samples(a, copy_grid);
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+    if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
+    BRepAdaptor_Curve c(TopoDS::Edge(e.Current()));
+    const double from = c.FirstParameter(), to = c.LastParameter();
+
+    for (int i = 0; i < copy_rim; i++)
+      out.push_back(c.Value(from + (to - from) * (i + 0.5) / copy_rim));
+  }
+}
+
+/* Does a lie entirely on b, judged by points inside and, less sharply, on the
+ * rim? */
+bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double size)
+{
+  std::vector<gp_Pnt> some = samples(a, copy_grid), rim;
   Projector on(b);
+  auto all = [&](const std::vector<gp_Pnt> &list, double tolerance) {
+    return std::all_of(list.begin(), list.end(), [&](const gp_Pnt &p) {
+      return p.Distance(on.nearest(p)) <= tolerance;
+    });
+  };
 
   if (some.empty()) some.push_back(point_of(a));
-  return std::all_of(some.begin(), some.end(), [&](const gp_Pnt &p) {
-    return p.Distance(on.nearest(p)) <= tolerance;
-  });
+  add_rim(a, rim);
+  return all(some, copy_near * size) && all(rim, rim_near * size);
 }
 
 bool are_copies(const Model &model, const Measure &a, const Measure &b)
@@ -88,7 +109,7 @@ bool are_copies(const Model &model, const Measure &a, const Measure &b)
 
   return std::fabs(a.area - b.area) <= area_near * a.area &&
          a.centre.Distance(b.centre) <= centre_near * size &&
-         lies_on(f, g, copy_near * size) && lies_on(g, f, copy_near * size);
+         lies_on(f, g, size) && lies_on(g, f, size);
 }
 
 /* Normal of a face at its nearest point to p, oriented as the face. */

@@ -21,6 +21,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Vertex.hxx>
+#include <gp_Vec.hxx>
 
 namespace vg_occt
 {
@@ -225,6 +226,10 @@ private:
 
 /* Relative error requested from Open CASCADE for the area of a face. */
 const double area_near = 1e-4;
+/* The triangles of a face have its area to this relative tolerance, or at least
+ * to this fraction of the area of all faces. The mesher of Open CASCADE, which
+ * reports no error then, may cover a part of a face only. */
+const double face_near = 0.25, all_near = 1e-5; /* S89 */
 
 /* Key and name of the patch of a face. */
 std::string group_of(const vg_cad_ask &ask, const Face &f)
@@ -342,6 +347,47 @@ void make_triangles(const vg_cad_ask &ask, Model &model, double least,
   else run_mesher(ask, together(model), least);
 }
 
+double area_of(const TopoDS_Face &face)
+{
+  GProp_GProps g;
+
+  BRepGProp::SurfaceProperties(face, g, face_near / 10);
+  return std::fabs(g.Mass());
+}
+
+/* Note the first face that its triangles do not cover. */
+void check_areas(const Model &model, const Surface &s, const Talk &talk)
+{
+  std::vector<double> has(model.faces.size(), 0);
+  double all = 0;
+
+  for (size_t t = 0; t < s.face.size(); t++) {
+    gp_Pnt p[3];
+
+    for (size_t i = 0; i < 3; i++) {
+      const double *x = s.point.data() + 3 * s.tri[3 * t + i];
+      p[i].SetCoord(x[0], x[1], x[2]);
+    }
+    const double a = gp_Vec(p[0], p[1]).Crossed(gp_Vec(p[0], p[2])).Magnitude();
+    has[s.piece[t]] += a / 2;
+    all += a / 2;
+  }
+  for (size_t i = 0; i < has.size(); i++) {
+    const Face &f = model.faces[i];
+
+    if (f.shape.IsNull() || !(has[i] > 0)) continue;
+    const double area = area_of(f.shape), off = std::fabs(has[i] - area);
+    if (off <= face_near * area || off <= all_near * all) continue;
+    talk.note(
+      format("the triangles of %s at %s have an area of %.4g, but the "
+             "face itself %.4g: Open CASCADE covered it in part, or its "
+             "rim crosses itself. If the surface lacks a part there, "
+             "export the file in another format (STEP, BREP)",
+             named(f).c_str(), place(point_of(f.shape)).c_str(), has[i], area));
+    return;
+  }
+}
+
 } // namespace
 
 void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
@@ -377,6 +423,7 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
     throw Failure{ VG_ERR_GEOMETRY, "none of its faces could be triangulated" };
   if (ask.least > 0) collapse_short(out, least);
   follow_faces(out, model);
+  check_areas(model, out, talk);
   find_rims(out);
 }
 

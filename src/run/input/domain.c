@@ -71,6 +71,11 @@ static void note_half(struct vg_boundary *b)
 {
   const int half = (int)b->read->settings.half;
 
+  if (b->flow.root_off > 0)
+    vg_note(b->notes,
+            "the root of the half model is up to %.3g off the plane %c = %g; "
+            "it was moved into this plane",
+            b->flow.root_off, "xyz"[b->flow.axis], b -> flow.at);
   if (half == VG_HALF_AUTO || half == VG_HALF_NO || b->flow.axis >= 0) return;
   if (b->check.is_closed)
     vg_note(b->notes, "setting that has no effect because the surface is "
@@ -455,7 +460,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   const size_t n_own = b->surface.n_patch;
   vg_status st;
 
-  far.symmetry = b->flow.axis < 0 ? -1 : 1;
+  far.symmetry = b->flow.axis < 0 ? -1 : b->flow.root_off > 0 ? 2 : 1;
   VG_TRY(check_farfield(b, &far, err));
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };

@@ -426,6 +426,8 @@ static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
   if (!b->is_remeshed || o->has_maker) goto done;
   if (!is_reference(&b->check)) return defects(b, show, err);
   st = vg_boundary_remesh(b, show, &why);
+  if (st == VG_ERR_INPUT && b->check.count[VG_DEFECT_NONMANIFOLD_EDGE])
+    return defects(b, show, err);
   if (st == VG_ERR_GEOMETRY) st = keep_given(b, &why);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
