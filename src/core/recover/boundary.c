@@ -22,7 +22,7 @@ struct tri_table {
   struct vg_table table;
   const uint32_t (*tri)[3];
   uint32_t *twin; /* [number of triangles] the opposite triangle of one in the
-                     table, or VG_NONE; NULL: there are none */
+                     table, or VG_NONE; NULL: no twins */
   size_t n_twin;
 };
 

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "core/sides/inner_parts.h"
 
-static vg_status build(struct vg_sheets *s, struct vg_error *err)
+static vg_status build(struct vg_inner_work *s, struct vg_error *err)
 {
   const struct vg_mesh *m = s->m;
 
@@ -20,14 +20,14 @@ static vg_status build(struct vg_sheets *s, struct vg_error *err)
 /* --- copies of points ----------------------------------------------------- */
 
 /* Half-face corner e looks into the fluid. */
-static int is_fluid(const struct vg_sheets *s, uint32_t e)
+static int is_fluid(const struct vg_inner_work *s, uint32_t e)
 {
   return !(e / 3 & 1) || vg_is_sheet(s, e / 6);
 }
 
 /* Gives each sector of the points of sheets a point: the first one the point
  * itself, the others copies. point: [n_sector] */
-static vg_status number_sectors(struct vg_sheets *s, uint32_t *point,
+static vg_status number_sectors(struct vg_inner_work *s, uint32_t *point,
                                 struct vg_error *err)
 {
   const struct vg_sides *a = &s->sides;
@@ -58,7 +58,7 @@ static vg_status number_sectors(struct vg_sheets *s, uint32_t *point,
 }
 
 /* Triangles of walls and first sides in place, second sides at the end. */
-static vg_status take_sides(struct vg_sheets *s, const uint32_t *point,
+static vg_status take_sides(struct vg_inner_work *s, const uint32_t *point,
                             const uint32_t *back, struct vg_error *err)
 {
   struct vg_mesh *m = s->m;
@@ -85,7 +85,7 @@ static vg_status take_sides(struct vg_sheets *s, const uint32_t *point,
   return VG_OK;
 }
 
-static vg_status make_copies(struct vg_sheets *s, const uint32_t *back,
+static vg_status make_copies(struct vg_inner_work *s, const uint32_t *back,
                              struct vg_error *err)
 {
   uint32_t *point = vg_alloc(s->sides.n_sector, sizeof *point);
@@ -100,7 +100,7 @@ static vg_status make_copies(struct vg_sheets *s, const uint32_t *back,
 /* --- whole -----------------------------------------------------------------
  */
 
-static vg_status make(struct vg_sheets *s, const uint32_t *back,
+static vg_status make(struct vg_inner_work *s, const uint32_t *back,
                       struct vg_error *err)
 {
   size_t n_cut;
@@ -125,7 +125,9 @@ vg_status vg_inner_double(struct vg_mesh *m, const uint8_t *is_inner,
                           struct vg_error *err)
 {
   struct vg_mesh work = VG_MESH_INIT;
-  struct vg_sheets s = { .m = &work, .is_inner = is_inner, .report = report };
+  struct vg_inner_work s = { .m = &work,
+                             .is_inner = is_inner,
+                             .report = report };
   vg_status st;
 
   assert(is_inner && back && report && !m->n_quad);

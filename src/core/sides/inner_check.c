@@ -8,8 +8,8 @@
 #include "core/geometry/predicates.h"
 #include "core/sides/inner_parts.h"
 
-static vg_status fail_at(const struct vg_sheets *s, size_t t, const char *why,
-                         struct vg_error *err)
+static vg_status fail_at(const struct vg_inner_work *s, size_t t,
+                         const char *why, struct vg_error *err)
 {
   const struct vg_mesh *m = s->m;
   const struct vg_patch *p = &m->patch[m->tri_patch[t]];
@@ -25,7 +25,8 @@ static vg_status fail_at(const struct vg_sheets *s, size_t t, const char *why,
 
 /* --- points --------------------------------------------------------------- */
 
-static vg_status check_points(const struct vg_sheets *s, struct vg_error *err)
+static vg_status check_points(const struct vg_inner_work *s,
+                              struct vg_error *err)
 {
   uint32_t *n_fan = vg_alloc(s->sides.n_point, sizeof *n_fan);
   vg_status st = n_fan ? vg_sides_fans(&s->sides, n_fan, err)
@@ -68,20 +69,33 @@ static int crosses(const struct vg_mesh *m, size_t t, const double *a,
   return from == 0 || to == 0 ? -1 : 1;
 }
 
+/* A place in triangle t that is not a special one such as the centroid, so that
+ * few lines through it meet corners and edges. */
+static void place_in(const struct vg_mesh *m, size_t t, const double share[3],
+                     double x[3])
+{
+  for (int d = 0; d < 3; d++) {
+    x[d] = 0;
+    for (int k = 0; k < 3; k++) x[d] += share[k] * m->point[m->tri[t][k]][d];
+  }
+}
+
 /* Is point x in the fluid? A straight line to a place in triangle `last` of a
  * wall arrives from one of its sides; each wall that it crosses before changes
- * between fluid and solid. -1: the line meets a border. */
-static int is_in_fluid(const struct vg_sheets *s, const double *x, size_t last)
+ * between fluid and solid. -1: the line meets a border, -2: it is in the plane
+ * of the triangle. */
+static int is_in_fluid(const struct vg_inner_work *s, const double *x,
+                       size_t last)
 {
   static const double share[3] = { .361, .293, .346 };
   const struct vg_mesh *m = s->m;
   const uint32_t *v = m->tri[last];
-  double to[3] = { 0, 0, 0 }, side;
+  double to[3], side;
   int is_fluid;
 
-  for (int k = 0; k < 3; k++)
-    for (int d = 0; d < 3; d++) to[d] += share[k] * m->point[v[k]][d];
+  place_in(m, last, share, to);
   side = vg_orient3d(m->point[v[0]], m->point[v[1]], m->point[v[2]], x);
+  if (side == 0) return -2;
   is_fluid = side > 0;
   for (size_t t = 0; t < m->n_tri && side != 0; t++) {
     const int hit = t == last || vg_is_sheet(s, t) ? 0 : crosses(m, t, x, to);
@@ -92,18 +106,29 @@ static int is_in_fluid(const struct vg_sheets *s, const double *x, size_t last)
   return side == 0 ? -1 : is_fluid;
 }
 
-static vg_status check_alone(const struct vg_sheets *s, size_t t,
+enum { TRIES = 64 }; /* Lines for one sheet; nearly always the first decides. */
+
+static vg_status check_alone(const struct vg_inner_work *s, size_t t,
                              struct vg_error *err)
 {
-  const double *x = s->m->point[s->m->tri[t][0]];
+  static const double share[3] = { .227, .342, .431 };
+  double x[3];
+  int n = 0;
 
-  for (size_t last = 0; last < s->m->n_tri; last++) {
-    const int is = vg_is_sheet(s, last) ? -1 : is_in_fluid(s, x, last);
+  place_in(s->m, t, share, x);
+  for (size_t last = 0; last < s->m->n_tri && n < TRIES; last++) {
+    int is;
 
+    if (vg_is_sheet(s, last)) continue;
+    is = is_in_fluid(s, x, last);
+    n += is != -2;
     if (is > 0) return VG_OK;
-    if (is == 0) break;
+    if (is == 0) return fail_at(s, t, "is not in the fluid", err);
   }
-  return fail_at(s, t, "is not in the fluid", err);
+  return fail_at(s, t,
+                 "has an unknown place, since lines from it to the walls meet "
+                 "their edges; move it a little,",
+                 err);
 }
 
 /* --- regions ----------------------------------------------------------------
@@ -111,7 +136,7 @@ static vg_status check_alone(const struct vg_sheets *s, size_t t,
 
 enum { HAS_SHEET = 1, HAS_FLUID = 2, HAS_SOLID = 4 };
 
-static void mark_regions(const struct vg_sheets *s, uint8_t *has)
+static void mark_regions(const struct vg_inner_work *s, uint8_t *has)
 {
   for (size_t h = 0; h < 2 * s->m->n_tri; h++)
     has[s->sides.region[h]] |= vg_is_sheet(s, h / 2) ? HAS_SHEET
@@ -122,7 +147,8 @@ static void mark_regions(const struct vg_sheets *s, uint8_t *has)
 /* A region on the solid side of walls has no sheets. A sheet without walls is
  * one region with both sides, or encloses a part of the space: then one of its
  * points decides, once for each region. */
-static vg_status check_regions(const struct vg_sheets *s, struct vg_error *err)
+static vg_status check_regions(const struct vg_inner_work *s,
+                               struct vg_error *err)
 {
   uint8_t *has = vg_calloc(s->sides.n_region, 1);
   vg_status st = has ? VG_OK : vg_fail_memory(err, "the sides of a sheet");
@@ -140,7 +166,7 @@ static vg_status check_regions(const struct vg_sheets *s, struct vg_error *err)
   return st;
 }
 
-vg_status vg_inner_check(const struct vg_sheets *s, struct vg_error *err)
+vg_status vg_inner_check(const struct vg_inner_work *s, struct vg_error *err)
 {
   vg_status st = check_points(s, err);
 

@@ -9,7 +9,7 @@
 #include "core/sides/inner_parts.h"
 
 /* Do both sides of triangle t have the same points? */
-static int is_same(const struct vg_sheets *s, size_t t)
+static int is_same(const struct vg_inner_work *s, size_t t)
 {
   const uint32_t *sector = s->sides.sector + 6 * t;
 
@@ -19,7 +19,7 @@ static int is_same(const struct vg_sheets *s, size_t t)
 
 /* Rank of half-edge h for a cut: edges of sheets alone before those of walls;
  * free edges have none. */
-static int rank_of(const struct vg_sheets *s, uint32_t h)
+static int rank_of(const struct vg_inner_work *s, uint32_t h)
 {
   const size_t i = s->sides.edge.of_half[h];
   const uint32_t n = vg_edges_count(&s->sides.edge, i);
@@ -31,7 +31,7 @@ static int rank_of(const struct vg_sheets *s, uint32_t h)
 }
 
 /* The half-edge of triangle t to cut; UINT32_MAX: all are free. */
-static uint32_t edge_to_cut(const struct vg_sheets *s, uint32_t t)
+static uint32_t edge_to_cut(const struct vg_inner_work *s, uint32_t t)
 {
   uint32_t best = UINT32_MAX;
   double longest = 0;
@@ -72,7 +72,7 @@ static void add_copy(struct vg_mesh *m, size_t t, uint32_t k, uint32_t p)
 }
 
 /* Cuts the edge of half-edge h, with all its triangles. */
-static void cut_edge(struct vg_sheets *s, uint32_t h, uint8_t *is_done)
+static void cut_edge(struct vg_inner_work *s, uint32_t h, uint8_t *is_done)
 {
   const struct vg_edges *e = &s->sides.edge;
   const uint32_t end[2] = { s->m->tri[h / 3][h % 3],
@@ -89,7 +89,7 @@ static void cut_edge(struct vg_sheets *s, uint32_t h, uint8_t *is_done)
 }
 
 /* Cuts a triangle whose edges are all free into three. */
-static void cut_alone(struct vg_sheets *s, size_t t, uint8_t *is_done)
+static void cut_alone(struct vg_inner_work *s, size_t t, uint8_t *is_done)
 {
   const uint32_t p = add_middle(s->m, s->m->tri[t], 3);
 
@@ -99,7 +99,7 @@ static void cut_alone(struct vg_sheets *s, size_t t, uint8_t *is_done)
 }
 
 /* None of the triangles on the edge of half-edge h has been cut. */
-static int is_whole(const struct vg_sheets *s, uint32_t h,
+static int is_whole(const struct vg_inner_work *s, uint32_t h,
                     const uint8_t *is_done)
 {
   const struct vg_edges *e = &s->sides.edge;
@@ -110,7 +110,8 @@ static int is_whole(const struct vg_sheets *s, uint32_t h,
 }
 
 /* Room for a cut of every triangle that needs one. */
-static vg_status reserve(struct vg_sheets *s, size_t n, struct vg_error *err)
+static vg_status reserve(struct vg_inner_work *s, size_t n,
+                         struct vg_error *err)
 {
   struct vg_mesh *m = s->m;
   size_t most = 2, cap_point = m->n_point, cap_tri = m->n_tri, cap = cap_tri;
@@ -126,7 +127,8 @@ static vg_status reserve(struct vg_sheets *s, size_t n, struct vg_error *err)
   return VG_OK;
 }
 
-vg_status vg_inner_cut(struct vg_sheets *s, size_t *n_cut, struct vg_error *err)
+vg_status vg_inner_cut(struct vg_inner_work *s, size_t *n_cut,
+                       struct vg_error *err)
 {
   const uint32_t n_tri = (uint32_t)s->m->n_tri;
   uint8_t *is_done = vg_calloc(n_tri, 1);

@@ -19,13 +19,13 @@ static void sort_edge(struct vg_sides *s, size_t i)
 {
   uint32_t *half = s->edge.half + s->edge.start[i];
   const uint32_t n = vg_edges_count(&s->edge, i);
-  const struct vg_axis axis = vg_axis_of(s, half[0]);
+  const struct vg_turn axis = vg_turn_of(s, half[0]);
 
   for (uint32_t k = 2; k < n; k++) {
     const uint32_t h = half[k], apex = vg_half_apex(s, h);
     uint32_t m = k;
 
-    for (; m > 1 && vg_axis_before(&axis, s->x[apex],
+    for (; m > 1 && vg_turn_before(&axis, s->x[apex],
                                    s->x[vg_half_apex(s, half[m - 1])]);
          m--)
       half[m] = half[m - 1];

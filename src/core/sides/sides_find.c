@@ -7,18 +7,18 @@
 
 /* --- angles around an edge ------------------------------------------------ */
 
-struct vg_axis vg_axis_of(const struct vg_sides *s, uint32_t h)
+struct vg_turn vg_turn_of(const struct vg_sides *s, uint32_t h)
 {
   uint32_t a = vg_half_from(s->tri, h), b = vg_half_to(s->tri, h);
 
-  return (struct vg_axis){ s->x[a < b ? a : b], s->x[a < b ? b : a],
+  return (struct vg_turn){ s->x[a < b ? a : b], s->x[a < b ? b : a],
                            s->x[vg_half_apex(s, h)] };
 }
 
 /* For a point in the plane of the axis and its zero direction: is it on the
  * side of the zero direction? Decided in a projection along a coordinate axis
  * in which the three points do not become one line. */
-static int is_at_zero(const struct vg_axis *axis, const double y[3])
+static int is_at_zero(const struct vg_turn *axis, const double y[3])
 {
   for (int k = 0; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -35,7 +35,7 @@ static int is_at_zero(const struct vg_axis *axis, const double y[3])
 
 /* Part of the turn with the angle of y: 0 at zero, 1 up to half a turn, 2 at
  * half a turn, 3 beyond. */
-static int part_of(const struct vg_axis *axis, const double y[3])
+static int part_of(const struct vg_turn *axis, const double y[3])
 {
   const double side = vg_orient3d(axis->a, axis->b, axis->zero, y);
 
@@ -43,7 +43,7 @@ static int part_of(const struct vg_axis *axis, const double y[3])
   return is_at_zero(axis, y) ? 0 : 2;
 }
 
-int vg_axis_before(const struct vg_axis *axis, const double y[3],
+int vg_turn_before(const struct vg_turn *axis, const double y[3],
                    const double z[3])
 {
   const int i = part_of(axis, y), j = part_of(axis, z);
@@ -115,10 +115,10 @@ static uint32_t find_wedge(const struct vg_sides *s, uint32_t p, uint32_t h,
 {
   const size_t i = s->edge.of_half[h];
   const uint32_t *half = vg_edges_at(&s->edge, i);
-  const struct vg_axis axis = vg_axis_of(s, half[0]);
+  const struct vg_turn axis = vg_turn_of(s, half[0]);
   uint32_t k = vg_edges_count(&s->edge, i) - 1, e;
 
-  while (k && vg_axis_before(&axis, y, s->x[vg_half_apex(s, half[k])])) k--;
+  while (k && vg_turn_before(&axis, y, s->x[vg_half_apex(s, half[k])])) k--;
   e = vg_wedge_above(s, half[k]);
   return s->tri[e / 6][e % 3] == p ? e : vg_half_next(e);
 }

@@ -7,7 +7,7 @@
 
 /* An edge from its lower point a to its higher point b, and the direction from
  * which angles around it count, counter-clockwise seen from b. */
-struct vg_axis {
+struct vg_turn {
   const double *a, *b, *zero;
 };
 
@@ -18,11 +18,11 @@ static inline uint32_t vg_half_apex(const struct vg_sides *s, uint32_t h)
 }
 
 /** The edge of half-edge h. Angles count from the triangle of h. */
-struct vg_axis vg_axis_of(const struct vg_sides *s, uint32_t h);
+struct vg_turn vg_turn_of(const struct vg_sides *s, uint32_t h);
 
 /** Is the angle of y smaller than that of z? Angles are from 0 (included) to a
  * full turn. Exact. */
-int vg_axis_before(const struct vg_axis *axis, const double y[3],
+int vg_turn_before(const struct vg_turn *axis, const double y[3],
                    const double z[3]);
 
 /** The half-face edge of the triangle of half-edge h, as 3 h' + k, that looks

@@ -138,11 +138,9 @@ static vg_status take_rows(struct vg_boundary *b, size_t n,
     vg_settings_release(&view);
     return st;
   }
-  for (size_t i = 0; i < n; i++) {
-    size_t at = vg_mesh_find_patch(&b->surface, old[i].id);
-
-    if (at != SIZE_MAX) view.patch[at].hard = old[i].hard;
-  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < view.n_patch; k++)
+      if (view.patch[k].id == old[i].id) view.patch[k].hard = old[i].hard;
   free(b->row);
   b->row = view.patch;
   b->n_row = view.n_patch;

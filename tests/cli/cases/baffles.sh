@@ -52,7 +52,7 @@ valid fin --baffles fin
 valid both --baffles 'fin,plate'
 valid across --baffles 7
 
-# The patches of both sides, and what the notes say.
+# The patches of both sides, and the note on them.
 vanguard mesh both.stl --flow internal --baffles fin,plate --hmax 0.12 \
   --write b8.ugrid,vtu,su2 --out named
 exits 0
@@ -60,6 +60,20 @@ says out "inner surfaces (baffles): 52 triangles"
 for name in fin fin_back plate plate_back; do
   says named/both.su2 "MARKER_TAG= $name"
 done
+
+# The deck with all settings makes the same mesh.
+vanguard mesh both.stl --deck named/both.resolved.deck --quiet --out again \
+  --write b8.ugrid
+exits 0
+same named/both.b8.ugrid again/both.b8.ugrid
+
+# In an external flow: a disk behind a box, with layers on the box.
+duct disk "disk 4 4  1.5 0.25 0.25  0 0.5 0  0 0 0.5"
+vanguard mesh disk.stl --flow external --baffles disk --walls 'w*' \
+  --first 0.02 --farfield-lengths 4 --quiet --write b8.ugrid --out ext
+exits 0
+vanguard check ext/disk.b8.ugrid
+exits 0
 
 # The two halves on both sides of the wall across are separate.
 vanguard check o_across/across.b8.ugrid
