@@ -49,8 +49,9 @@ static vg_status refuse_all(const struct vg_boundary *b, struct vg_error *err)
 
 /* Adds a patch for the other side of patch i: NAME_back, with a new number and
  * the same conditions. */
-static vg_status add_back(struct vg_mesh *m, size_t i, struct vg_error *err)
+static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
 {
+  struct vg_mesh *m = &b->surface;
   struct vg_patch *back;
   char name[VG_NAME_MAX] = "";
   int32_t id = 0;
@@ -74,6 +75,11 @@ static vg_status add_back(struct vg_mesh *m, size_t i, struct vg_error *err)
   back->family = m->patch[i].family;
   m->patch[i].inner = VG_INNER_FRONT;
   back->inner = VG_INNER_BACK;
+  vg_note(
+    b->notes,
+    "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
+    (int)m->patch[i].id, *name ? " " : "", m->patch[i].name, (int)back->id,
+    *name ? " " : "", back->name);
   return VG_OK;
 }
 
@@ -114,13 +120,14 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
   VG_TRY(vg_patch_list_mark("baffles", b->read->settings.baffles, m, n_patch,
                             on, err));
   for (size_t i = 0; i < n_patch; i++)
-    if (on[i]) VG_TRY(add_back(m, i, err));
+    if (on[i]) VG_TRY(add_back(b, i, err));
   VG_TRY(split_off(m, &b->inner, err));
   if (!m->n_tri) VG_TRY(refuse_all(b, err));
-  vg_note(b->notes,
-          "%zu triangles are inner surfaces (baffles %s): they are checked "
-          "when the surface is closed, and its figures do not include them",
-          b->inner.n_tri, b->read->settings.baffles);
+  vg_note(
+    b->notes,
+    "the figures of the surface do not include the %zu triangles of inner "
+    "surfaces, which are checked when the surface is closed",
+    b->inner.n_tri);
   b->is_remeshed = 0;
 done:
   free(on);
@@ -263,9 +270,8 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
   VG_TRY(extend_check(&b->check, b->surface.n_tri, all->n_tri, err));
   vg_mesh_move(&b->surface, all);
   vg_note(b->notes,
-          "inner surfaces (baffles): %zu triangles with fluid on both sides "
-          "are written as two patches, NAME and NAME_back; %zu points occur "
-          "more than once",
+          "inner surfaces: %zu triangles with fluid on both sides; %zu copies "
+          "of points were added",
           r.n_tri, r.n_point);
   if (r.n_cut)
     vg_note(b->notes,

@@ -56,7 +56,8 @@ valid across --baffles 7
 vanguard mesh both.stl --flow internal --baffles fin,plate --hmax 0.12 \
   --write b8.ugrid,vtu,su2 --out named
 exits 0
-says out "inner surfaces (baffles): 52 triangles"
+says out "inner surfaces: 52 triangles"
+says out "patch 7 fin is an inner surface (baffles); its back is patch 9 fin_back"
 for name in fin fin_back plate plate_back; do
   says named/both.su2 "MARKER_TAG= $name"
 done
