@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Inner surfaces: patches of a box with fluid on both sides.
+needs tetgen
 
 # duct NAME SHEET...: a closed box from 0 to 1 of 8 x 8 quadrilaterals a side,
 # patches 1 to 6, and sheets "ID N M  ox oy oz  ux uy uz  vx vy vz" of N x M,
