@@ -34,10 +34,11 @@ static void boundary_of_cells_is_independent_of_pieces(void **state)
 {
   static const uint32_t cell[2][4] = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
   struct vg_piece both = piece_of(2, cell);
+  const struct vg_doubled none = { .first = NULL };
   struct vg_front whole = VG_FRONT_INIT;
 
   (void)state;
-  assert_int_equal(vg_recut_front(&both, &whole, NULL), VG_OK);
+  assert_int_equal(vg_recut_front(&none, &both, &whole, NULL), VG_OK);
   assert_int_equal(whole.n_face, 6);
   assert_int_equal(whole.n_point, 5);
   assert_true(fabs(vg_front_volume(&whole) - 1. / 6 - 1. / 6) < 1e-12);
@@ -45,13 +46,13 @@ static void boundary_of_cells_is_independent_of_pieces(void **state)
     struct vg_piece one = piece_of(1, &cell[k]), two = piece_of(1, &cell[!k]);
     struct vg_front f = VG_FRONT_INIT, g = VG_FRONT_INIT;
 
-    assert_int_equal(vg_recut_front(&one, &f, NULL), VG_OK);
-    assert_int_equal(vg_recut_front(&two, &g, NULL), VG_OK);
+    assert_int_equal(vg_recut_front(&none, &one, &f, NULL), VG_OK);
+    assert_int_equal(vg_recut_front(&none, &two, &g, NULL), VG_OK);
     assert_int_equal(f.n_face + g.n_face, 8);
     assert_int_equal(f.n_point + g.n_point, 8);
     assert_int_equal(vg_front_join(&f, &g, NULL), VG_OK);
     assert_int_equal(vg_front_weld(&f, NULL), VG_OK);
-    assert_int_equal(vg_recut_settle(&f, NULL), VG_OK);
+    assert_int_equal(vg_recut_settle(&none, &f, NULL), VG_OK);
     assert_int_equal(f.n_face, whole.n_face);
     assert_int_equal(f.n_point, whole.n_point);
     assert_memory_equal(f.x, whole.x, 5 * sizeof *f.x);
@@ -64,7 +65,7 @@ static void boundary_of_cells_is_independent_of_pieces(void **state)
   }
   assert_int_equal(vg_front_join(&whole, &whole, NULL), VG_OK);
   assert_int_equal(vg_front_weld(&whole, NULL), VG_OK);
-  assert_int_equal(vg_recut_settle(&whole, NULL), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_recut_settle(&none, &whole, NULL), VG_ERR_GEOMETRY);
   vg_front_release(&whole);
   vg_piece_release(&both);
 }

@@ -403,6 +403,12 @@ done:
   return st;
 }
 
+/* Difference of a count from the expected one. */
+static size_t missing(size_t n, uint64_t expected)
+{
+  return (size_t)(n > expected ? n - expected : expected - n);
+}
+
 static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
                        uint64_t front_faces, double enclosed,
                        struct vg_mesh_report *r)
@@ -417,15 +423,15 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
                       (q == VG_JUDGED_WHOLE && j->has_dual ? VG_HAS_DUAL : 0),
                     &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
+  r[VG_JUDGED_WHOLE].duplicate_point = missing(
+    r[VG_JUDGED_WHOLE].duplicate_point, j->s->n_copy);
   r[VG_JUDGED_WHOLE].bytes_shared = j->bytes;
   for (int i = 0; i < j->n_worker; i++)
     r[VG_JUDGED_WHOLE].bytes_slices += j->worker[i].slice_bytes;
   vg_report_conclude(&r[VG_JUDGED_WHOLE]);
   if (j->n_judged == 1) return;
   r += VG_JUDGED_FIELD;
-  r->open_face = (size_t)(r->open_face > front_faces
-                            ? r->open_face - front_faces
-                            : front_faces - r->open_face);
+  r->open_face = missing(r->open_face, front_faces);
   r->enclosed = r->volume;
   vg_report_conclude(r);
 }

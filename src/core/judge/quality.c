@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check: runs the sweeps one after the other and draws the
  * conclusion. */
+#include "core/mesh/copies.h"
 #include "core/judge/quality.h"
 
 #include <assert.h>
@@ -117,12 +118,15 @@ static int same_place(const double a[3], const double b[3])
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Count points that coincide with an earlier one. They are not entered in the
- * table, so that many points at one position cost little. */
+/* Count points that coincide with an earlier one, except on both sides of inner
+ * surfaces. They are not entered in the table, so that many points at one
+ * position cost little. */
 static vg_status count_duplicates(const struct vg_mesh *m, struct vg_counts *n,
                                   struct vg_error *err)
 {
   struct vg_table t;
+  uint64_t n_copy = 0;
+  vg_status st = VG_OK;
 
   if (vg_table_init(&t, m->n_point))
     return vg_fail_memory(err, "the table of points");
@@ -135,7 +139,9 @@ static vg_status count_duplicates(const struct vg_mesh *m, struct vg_counts *n,
     else *at = (uint32_t)i;
   }
   vg_table_release(&t);
-  return VG_OK;
+  if (n->duplicate_point) st = vg_mesh_copies(m, &n_copy, err);
+  n->duplicate_point -= n_copy;
+  return st;
 }
 
 /* The cones start at the centre of the box, which minimises cancellation. */

@@ -24,12 +24,17 @@
  * code, so "not given" has a value of its own. */
 #define VG_BC_NONE INT32_MIN
 
+/* Part of an inner surface, which has fluid on both sides. */
+enum { VG_INNER_NOT, VG_INNER_FRONT, VG_INNER_BACK };
+
 /** A named part of the boundary. */
 struct vg_patch {
   int32_t id;             /* number in the files; any value, unique */
   int32_t bc;             /* USM3D code (formats.md 1.4), or VG_BC_NONE */
   int32_t bc_fun3d;       /* FUN3D code, or VG_BC_NONE */
   int32_t family;         /* VGRID family column; equal to bc if unknown */
+  int32_t inner;          /* VG_INNER_...: side of an inner surface; its other
+                             side has the same triangles, reversed */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 

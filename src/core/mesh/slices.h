@@ -47,7 +47,9 @@ struct vg_slice {
 struct vg_slices {
   /* Counts of the whole mesh. */
   uint64_t n_point, n_cell[VG_SLICE_KINDS];
-  uint64_t n_boundary_point;             /* boundary points come first */
+  uint64_t n_boundary_point; /* boundary points come first */
+  uint64_t n_copy; /* boundary points with the coordinates of earlier ones:
+                      both sides of inner surfaces */
   uint64_t n_layer_point;                /* index after the last layer point */
   uint64_t n_layer_cell[VG_SLICE_KINDS]; /* layer cells come first of their
                                             kind */

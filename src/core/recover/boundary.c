@@ -16,9 +16,14 @@
 
 /* --- surface triangles among the cell faces ------------------------------- */
 
+/* Of two opposite triangles with the same corners, which are the sides of a
+ * sheet in the fluid, only the first one is in the table. */
 struct tri_table {
   struct vg_table table;
   const uint32_t (*tri)[3];
+  uint32_t *twin; /* [number of triangles] the opposite triangle of one in the
+                     table, or VG_NONE; NULL: no twins */
+  size_t n_twin;
 };
 
 /* The hash does not depend on the order of the corners, so that a search need
@@ -41,19 +46,47 @@ static int same_triangle(const uint32_t a[3], const uint32_t b[3])
   return 0;
 }
 
+static int add_twin(struct tri_table *t, size_t n, uint32_t i, uint32_t twin)
+{
+  if (!t->twin) {
+    t->twin = vg_alloc(n, sizeof *t->twin);
+    if (!t->twin) return -1;
+    memset(t->twin, 0xff, n * sizeof *t->twin);
+  }
+  t->twin[i] = twin;
+  t->n_twin++;
+  return 0;
+}
+
 static vg_status tri_table_init(struct tri_table *t, size_t n,
                                 const uint32_t (*tri)[3], struct vg_error *err)
 {
   t->tri = tri;
+  t->twin = NULL;
+  t->n_twin = 0;
   if (vg_table_init(&t->table, n))
     return vg_fail_memory(err, "the surface table");
   for (uint32_t i = 0; i < n; i++) {
     uint32_t *at;
 
-    VG_TABLE_FIND(&t->table, at, hash3(tri[i]), 0);
-    *at = i;
+    VG_TABLE_FIND(&t->table, at, hash3(tri[i]),
+                  same_triangle(tri[i], tri[*at]) < 0);
+    if (*at == VG_TABLE_FREE) *at = i;
+    else if (add_twin(t, n, *at, i))
+      return vg_fail_memory(err, "the surface table");
   }
   return VG_OK;
+}
+
+static void tri_table_release(struct tri_table *t)
+{
+  vg_table_release(&t->table);
+  free(t->twin);
+}
+
+static int has_twin(const struct tri_table *t, uint32_t i)
+{
+  return t->twin && t->twin[i] != VG_NONE;
 }
 
 static uint32_t tri_table_find(const struct tri_table *t, const uint32_t v[3],
@@ -76,7 +109,7 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
   uint8_t *found = vg_calloc(n_tri, 1);
   vg_status st = tri_table_init(&table, n_tri, tri, err);
 
-  *n_missing = n_tri;
+  *n_missing = n_tri - table.n_twin;
   if (!found && st == VG_OK) st = vg_fail_memory(err, "the surface table");
   for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD) continue;
@@ -94,10 +127,12 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
       found[at] = 1;
     }
   }
+  for (uint32_t i = 0; table.n_twin && st == VG_OK && i < n_tri; i++)
+    if (has_twin(&table, i)) found[table.twin[i]] = 1;
   for (size_t i = 0; missing && st == VG_OK && i < n_tri; i++)
     missing[i] = !found[i];
   free(found);
-  vg_table_release(&table.table);
+  tri_table_release(&table);
   return st;
 }
 
@@ -159,13 +194,15 @@ static void find_front(struct sides *s, const struct tri_table *table)
 
   for (uint32_t c = 0; c < t->n_cell; c++)
     for (uint32_t i = 0; t->flag[c] & VG_FIXED_FACES && i < 4; i++) {
-      uint32_t link = t->cell[c].link[i], v[3];
+      uint32_t link = t->cell[c].link[i], v[3], at;
       int sense = 0;
 
       if (!(t->flag[c] >> i & 1) || link < 4 * c + i) continue;
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
-      if (tri_table_find(table, v, &sense) == VG_NONE) continue;
-      s->front[c] |= (uint8_t)((sense > 0 ? 1 : 0x10) << i);
+      at = tri_table_find(table, v, &sense);
+      if (at == VG_NONE) continue;
+      if (has_twin(table, at)) sense = 0;
+      s->front[c] |= (uint8_t)((sense >= 0 ? 1 : 0x10) << i);
       if (link != VG_NONE)
         s->front[link >> 2] |= (uint8_t)((sense > 0 ? 0x10 : 1) << (link & 3));
     }
@@ -487,11 +524,35 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   free(s.near);
   free(s.queue);
   vg_region_cache_release(&cache);
-  vg_table_release(&table.table);
+  tri_table_release(&table);
   return st;
 }
 
 /* --- the whole void at once ----------------------------------------------- */
+
+/* Triangles without the second ones of opposite pairs. Freed by the caller. */
+static vg_status one_of_each(size_t n_tri, const uint32_t (*tri)[3],
+                             uint32_t (**out)[3], size_t *n_out,
+                             struct vg_error *err)
+{
+  struct tri_table table;
+  uint32_t(*one)[3] = vg_alloc(n_tri, sizeof *one);
+  vg_status st = tri_table_init(&table, n_tri, tri, err);
+  int sense;
+
+  if (!one && st == VG_OK) st = vg_fail_memory(err, "the surface table");
+  *n_out = 0;
+  for (uint32_t i = 0; st == VG_OK && i < n_tri; i++) {
+    const uint32_t at = tri_table_find(&table, tri[i], &sense);
+
+    if (!has_twin(&table, at) || table.twin[at] != i)
+      memcpy(one[(*n_out)++], tri[i], sizeof *one);
+  }
+  tri_table_release(&table);
+  if (st == VG_OK) *out = one;
+  else free(one);
+  return st;
+}
 
 static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             const uint32_t (*tri)[3], struct vg_tets *out,
@@ -568,6 +629,8 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
                            struct vg_error *err)
 {
   const struct vg_boundary_input in = { n, n_tri, x, tri, sizing, NULL };
+  uint32_t(*one)[3] = NULL;
+  size_t n_one = 0;
   vg_status st;
 
   assert(n > 0 && x && tri && report);
@@ -576,13 +639,15 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
   st = recover(&in, out, report, err);
   if (st == VG_ERR_GEOMETRY) {
     vg_tets_release(out);
-    st = whole_void(n, x, n_tri, tri, out, report, err);
+    VG_TRY(one_of_each(n_tri, tri, &one, &n_one, err));
+    st = whole_void(n, x, n_one, (const uint32_t(*)[3])one, out, report, err);
   }
   VG_TRY(st);
   VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, 0, NULL, err));
   VG_CHECK("boundary recovery", vg_tets_defects(out));
   VG_CHECK("boundary recovery", not_fixed(out, n_tri, tri));
 done:
+  free(one);
   if (st < 0) vg_tets_release(out);
   return st;
 }

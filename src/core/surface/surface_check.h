@@ -158,6 +158,12 @@ const char *vg_defect_heading(enum vg_defect_kind kind);
 vg_status vg_surface_weld(struct vg_mesh *m, double tolerance, size_t *n_merged,
                           size_t *n_dropped, struct vg_error *err);
 
+/** Merge points with the same coordinates, of which the lowest index is kept,
+ * and remove points that no face uses. Triangles keep their order, also those
+ * that collapse. Points keep their order. m has no cells. O(n). VG_ERR_MEMORY.
+ */
+vg_status vg_surface_merge_points(struct vg_mesh *m, struct vg_error *err);
+
 /** Find gaps between parts of a surface that coincide except for rounding: open
  * edges both ends of which are next to the ends of another open edge (a
  * partner), closer than a tenth of the shortest edge there. The rim of a hole

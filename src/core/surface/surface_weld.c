@@ -389,3 +389,22 @@ done:
   free(drop);
   return st;
 }
+
+vg_status vg_surface_merge_points(struct vg_mesh *m, struct vg_error *err)
+{
+  uint8_t *used = vg_calloc(m->n_point, 1);
+  uint32_t *map = NULL;
+  vg_status st = used ? vg_points_same(m, &map, err)
+                      : vg_fail_memory(err, "the points of the surface");
+
+  if (st >= 0) {
+    for (size_t i = 0; i < m->n_tri; i++)
+      for (int k = 0; k < 3; k++) used[map[m->tri[i][k]]] = 1;
+    for (size_t i = 0; i < m->n_quad; i++)
+      for (int k = 0; k < 4; k++) used[map[m->quad[i][k]]] = 1;
+    vg_mesh_renumber(m, map, used);
+  }
+  free(map);
+  free(used);
+  return st;
+}

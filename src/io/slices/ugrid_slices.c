@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
+#include "core/mesh/copies.h"
 #include "io/mesh/ugrid.h"
 #include "io/stream/convention.h"
 
@@ -441,6 +442,7 @@ static vg_status open_file(struct vg_ugrid_slices *u, size_t slice_cells,
                            struct vg_turned *turned, int *is_whole,
                            struct vg_error *err)
 {
+  struct vg_mesh boundary;
   vg_status st;
 
   *is_whole = 1;
@@ -450,6 +452,8 @@ static vg_status open_file(struct vg_ugrid_slices *u, size_t slice_cells,
   VG_TRY(read_boundary(u, err));
   serve(u, slice_cells);
   VG_TRY(read_boundary_points(u, err));
+  boundary = vg_ugrid_slices_boundary(u);
+  VG_TRY(vg_mesh_copies(&boundary, &u->slices.n_copy, err));
   st = scan(u, turned, is_whole, err);
 done:
   return st;

@@ -246,6 +246,7 @@ static void describe(struct vg_layer_slices *k, struct vg_slices *out)
   memset(out, 0, sizeof *out);
   out->n_point = p->n_point;
   out->n_boundary_point = p->first_inner;
+  out->n_copy = k->field->n_copy;
   out->n_layer_point = p->first_field;
   for (int i = 0; i < VG_SLICE_KINDS; i++) {
     out->n_layer_cell[i] = p->expand.n_cell[i];

@@ -57,6 +57,7 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   memcpy(n->front.x, m->point, m->n_point * sizeof *n->front.x);
   memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
   for (size_t k = 0; k < m->n_point; k++) n->front.id[k] = VG_POINT_ID(0, k);
+  VG_TRY(vg_doubled_merge(&p->doubled, &n->front, err));
   n->levels = p->options.levels;
   n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
@@ -254,7 +255,8 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->options = *options;
   if (p->options.threads < 1) p->options.threads = 1;
   p->stage = "fill";
-  st = run_whole(p, comm, spans, err);
+  st = vg_comm_agree(comm, vg_doubled_new(&p->doubled, &p->boundary, err), err);
+  if (st == VG_OK) st = run_whole(p, comm, spans, err);
   if (st == VG_OK)
     vg_partition_tell(p, p->stage, (size_t)p->report.estimate,
                       (size_t)p->report.estimate);
@@ -315,6 +317,7 @@ void vg_partition_free(struct vg_partition *p)
   }
   for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
   vg_recut_release(p);
+  vg_doubled_release(&p->doubled);
   free(p->piece);
   free(p->drop);
   free(p->place);

@@ -108,8 +108,9 @@ done:
 
 /* The front has the boundary's points in its own order, which its global ids
  * give. */
-static vg_status renumber(const struct vg_front *f, size_t n_boundary,
-                          struct vg_coarse_cells *c, struct vg_error *err)
+static vg_status renumber(const struct vg_doubled *d, const struct vg_front *f,
+                          size_t n_boundary, struct vg_coarse_cells *c,
+                          struct vg_error *err)
 {
   uint32_t *to = vg_alloc(n_boundary, sizeof *to);
   size_t n = f->n_point + c->n_point - n_boundary;
@@ -127,7 +128,8 @@ static vg_status renumber(const struct vg_front *f, size_t n_boundary,
   for (size_t k = 0; k < 4 * c->n_cell; k++) {
     uint32_t *v = &c->cell[k / 4][k % 4];
 
-    *v = *v < n_boundary ? to[*v] : (uint32_t)(*v - n_boundary + f->n_point);
+    *v = *v < n_boundary ? to[vg_doubled_first(d, *v)]
+                         : (uint32_t)(*v - n_boundary + f->n_point);
   }
   free(c->x);
   free(to);
@@ -254,7 +256,8 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   if (spans) rename_tasks(spans);
   if (st != VG_OK) goto done; /* or stopped */
   VG_TRY(gather(p, comm, vg_partition_slices(made), c, err));
-  if (root) st = renumber(&root->front, p->boundary.n_point, c, err);
+  if (root)
+    st = renumber(&p->doubled, &root->front, p->boundary.n_point, c, err);
   c->seconds = vg_clock() - t;
   st = vg_comm_agree(comm, st, err);
 done:

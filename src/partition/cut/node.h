@@ -26,6 +26,7 @@
 
 #include "base/comm.h"
 #include "core/mesh/slices.h"
+#include "partition/cut/doubled.h"
 #include "partition/cut/partition.h"
 #include "partition/cut/select.h"
 #include "partition/cut/task_data.h"
@@ -113,8 +114,9 @@ struct vg_work {
 
 struct vg_partition {
   int rank, size;
-  struct vg_mesh boundary; /* Boundary of the whole void; its arrays are
-                              borrowed. */
+  struct vg_mesh boundary;   /* Boundary of the whole void; its arrays are
+                                borrowed. */
+  struct vg_doubled doubled; /* Points of its inner surfaces. */
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
   const char *stage; /* Name for progress: "fill", "recut". */
@@ -255,12 +257,14 @@ vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
                          struct vg_error *err);
 
 /** vg_recut_front makes the front that the cells of a piece fill; *f is empty
- * before. vg_recut_settle removes faces that occur in both orientations, and
- * sorts faces and points by coordinates alone; VG_ERR_GEOMETRY if a face
- * occurs twice. The caller releases *f also on failure. (recut_front.c) */
-vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
-                         struct vg_error *err);
-vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err);
+ * before. vg_recut_settle removes faces that occur in both orientations, unless
+ * they are the sides of an inner surface, and sorts faces and points by
+ * coordinates alone; VG_ERR_GEOMETRY if a face occurs twice. The caller
+ * releases *f also on failure. (recut_front.c) */
+vg_status vg_recut_front(const struct vg_doubled *d, const struct vg_piece *q,
+                         struct vg_front *f, struct vg_error *err);
+vg_status vg_recut_settle(const struct vg_doubled *d, struct vg_front *f,
+                          struct vg_error *err);
 
 /** Is a face with these points inside one block, not touching a plane? */
 static inline int vg_node_is_in_block(const uint16_t *block,

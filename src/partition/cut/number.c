@@ -140,19 +140,12 @@ static void serve_front(const struct vg_partition *p, struct vg_slice *out)
   out->id = out->own = p->front_id;
 }
 
-static vg_status serve(const struct vg_slices *s, size_t i,
-                       struct vg_slice *out, struct vg_error *err)
+static vg_status serve_piece(const struct vg_partition *p, size_t i,
+                             struct vg_slice *out, struct vg_error *err)
 {
-  const struct vg_partition *p = s->user;
-  const struct vg_piece *piece;
+  const struct vg_piece *piece = &p->piece[i];
   uint32_t *id, *own, (*cell)[4];
 
-  memset(out, 0, sizeof *out);
-  if (p->rank == 0 && i-- == 0) {
-    serve_front(p, out);
-    return VG_OK;
-  }
-  piece = &p->piece[i];
   out->n_point = piece->n_in + piece->n_point;
   out->n_own = piece->n_point;
   /* one block: cells, then numbers of points */
@@ -179,6 +172,24 @@ static vg_status serve(const struct vg_slices *s, size_t i,
   return VG_OK;
 }
 
+static vg_status serve(const struct vg_slices *s, size_t i,
+                       struct vg_slice *out, struct vg_error *err)
+{
+  const struct vg_partition *p = s->user;
+  vg_status st;
+
+  memset(out, 0, sizeof *out);
+  if (p->rank == 0 && i-- == 0) {
+    serve_front(p, out);
+    return VG_OK;
+  }
+  st = serve_piece(p, i, out, err);
+  if (st < 0 || !p->doubled.first) return st;
+  st = vg_doubled_slice(&p->doubled, out, err);
+  if (st < 0) free(out->keep);
+  return st;
+}
+
 static void put_back(const struct vg_slices *s, struct vg_slice *slice)
 {
   (void)s;
@@ -197,6 +208,7 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
   if (!p->front_id) return vg_fail_memory(err, "numbering the mesh");
   for (size_t k = 0; k < p->boundary.n_point; k++) p->front_id[k] = (uint32_t)k;
   s->n_boundary_point = p->boundary.n_point;
+  s->n_copy = vg_doubled_copies(&p->doubled);
   s->boundary = &p->boundary_faces;
   s->n_slice = p->n_piece + (p->rank == 0);
   for (size_t k = 0; k < p->n_piece; k++) s->n_served += p->piece[k].n_cell;

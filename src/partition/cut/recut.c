@@ -399,7 +399,7 @@ static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
       p->piece[left++] = *piece;
       continue;
     }
-    st = vg_recut_front(piece, &f, err);
+    st = vg_recut_front(&p->doubled, piece, &f, err);
     if (st == VG_OK) send_front(q, q->near[k], 0, &f);
     if (st == VG_OK) st = add_gone(q, piece->serial, err);
     vg_front_release(&f);
@@ -490,7 +490,7 @@ static vg_status new_node(struct vg_partition *p, const char *path,
   vg_status st;
 
   VG_TRY(vg_front_weld(f, err));
-  VG_TRY(vg_recut_settle(f, err));
+  VG_TRY(vg_recut_settle(&p->doubled, f, err));
   snprintf(longer, sizeof longer, "%.*s%c", VG_PATH_MAX - 2, path, larger);
   n = *out = vg_node_new(longer, f);
   if (!n) return vg_fail_memory(err, "a void");

@@ -33,10 +33,35 @@ static int by_corners(const void *a, const void *b)
   return 0;
 }
 
-/* Removes faces that occur in both orientations, which are between two cells;
- * the others stay, ascending. VG_ERR_GEOMETRY if one occurs twice in the same
- * orientation. */
-static vg_status cancel(struct vg_front *f, struct vg_error *err)
+static void put_face(struct vg_front *f, size_t at, const struct side *s,
+                     int sense)
+{
+  f->face[at][0] = s->v[0];
+  f->face[at][1] = s->v[sense > 0 ? 1 : 2];
+  f->face[at][2] = s->v[sense > 0 ? 2 : 1];
+}
+
+/* Is this face of the front in an inner surface? */
+static int is_inner(const struct vg_doubled *d, const struct vg_front *f,
+                    const struct side *s)
+{
+  uint32_t v[3];
+
+  if (!d->first) return 0;
+  for (int k = 0; k < 3; k++) {
+    const uint64_t id = f->id[s->v[k]];
+
+    if (id >> 32) return 0;
+    v[k] = (uint32_t)id;
+  }
+  return vg_doubled_has(d, v);
+}
+
+/* Removes faces that occur in both orientations, which are between two cells,
+ * unless they are the sides of an inner surface; the others stay, ascending.
+ * VG_ERR_GEOMETRY if one occurs twice in the same orientation. */
+static vg_status cancel(const struct vg_doubled *d, struct vg_front *f,
+                        struct vg_error *err)
 {
   struct side *s = vg_alloc(f->n_face, sizeof *s);
   size_t left = 0;
@@ -49,14 +74,13 @@ static vg_status cancel(struct vg_front *f, struct vg_error *err)
 
     for (end = k; end < f->n_face && !by_corners(&s[k], &s[end]); end++)
       sum += s[end].sense;
-    if (!sum) continue;
-    if (abs(sum) > 1)
+    if (!sum && !is_inner(d, f, &s[k])) continue;
+    if (abs(sum) > 1 || (!sum && end - k > 2))
       st = vg_fail(err, VG_ERR_GEOMETRY,
                    "the front of a void that was cut contains a "
                    "face twice");
-    f->face[left][0] = s[k].v[0];
-    f->face[left][1] = s[k].v[sum > 0 ? 1 : 2];
-    f->face[left++][2] = s[k].v[sum > 0 ? 2 : 1];
+    put_face(f, left++, &s[k], sum ? sum : 1);
+    if (!sum) put_face(f, left++, &s[k], -1);
   }
   if (st == VG_OK) f->n_face = left;
   free(s);
@@ -107,22 +131,23 @@ static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
     for (int i = 0; i < 3; i++) f->face[k][i] = to[f->face[k][i]];
 }
 
-vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err)
+vg_status vg_recut_settle(const struct vg_doubled *d, struct vg_front *f,
+                          struct vg_error *err)
 {
   struct spot *s = vg_alloc(f->n_point, sizeof *s);
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
-  vg_status st = s && to ? cancel(f, err) : vg_fail_memory(err, "a front");
+  vg_status st = s && to ? cancel(d, f, err) : vg_fail_memory(err, "a front");
 
   assert(f->id || !f->n_point);
   if (st == VG_OK) place_points(f, s, to);
   free(s);
   free(to);
   /* faces in the order of their new corners */
-  return st == VG_OK ? cancel(f, err) : st;
+  return st == VG_OK ? cancel(d, f, err) : st;
 }
 
-vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
-                         struct vg_error *err)
+vg_status vg_recut_front(const struct vg_doubled *d, const struct vg_piece *q,
+                         struct vg_front *f, struct vg_error *err)
 {
   assert(!f->n_point && !f->n_face && !f->x && !f->id && !f->face);
   f->n_point = q->n_in + q->n_point;
@@ -140,5 +165,5 @@ vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
     vg_piece_cell(q, k / 4, v);
     for (int i = 0; i < 3; i++) f->face[k][i] = v[vg_face[k % 4][i]];
   }
-  return vg_recut_settle(f, err);
+  return vg_recut_settle(d, f, err);
 }

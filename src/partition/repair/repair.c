@@ -311,8 +311,9 @@ static void cluster_body(void *context, size_t first, size_t end, int worker)
 
 static vg_status repair_clusters(struct repair *r, struct vg_error *err)
 {
-  vg_status st = vg_repair_boundary_new(&r->p->boundary, r->n_block, r->block,
-                                        &r->boundary, err);
+  vg_status st = vg_repair_boundary_new(&r->p->doubled, &r->p->boundary,
+                                        r->n_block, r->block, &r->boundary,
+                                        err);
 
   if (st < 0) return st;
   vg_parallel_for(r->p->options.threads, r->n_job, 1, cluster_body, r);

@@ -17,21 +17,27 @@ static int by_points(const void *a, const void *b)
   return 0;
 }
 
-static vg_status list(const struct vg_mesh *m, const uint8_t *in,
-                      struct vg_repair_boundary *r)
+/* Corners of triangle k, by first copies. */
+static void corners_of(const struct vg_doubled *d, const struct vg_mesh *m,
+                       size_t k, uint32_t v[3])
 {
+  for (int i = 0; i < 3; i++) v[i] = vg_doubled_first(d, m->tri[k][i]);
+}
+
+static vg_status list(const struct vg_doubled *d, const struct vg_mesh *m,
+                      const uint8_t *in, struct vg_repair_boundary *r)
+{
+  uint32_t v[3];
   size_t n = 0;
 
   for (size_t k = 0; k < m->n_tri; k++) {
-    const uint32_t *v = m->tri[k];
-
+    corners_of(d, m, k, v);
     n += in[v[0]] && in[v[1]] && in[v[2]];
   }
   r->tri = vg_alloc(n, sizeof *r->tri);
   if (!r->tri) return VG_ERR_MEMORY;
   for (size_t k = 0; k < m->n_tri; k++) {
-    const uint32_t *v = m->tri[k];
-
+    corners_of(d, m, k, v);
     if (!in[v[0]] || !in[v[1]] || !in[v[2]]) continue;
     memcpy(r->tri[r->n], v, sizeof *r->tri);
     vg_order3(r->tri[r->n++]);
@@ -40,7 +46,8 @@ static vg_status list(const struct vg_mesh *m, const uint8_t *in,
   return VG_OK;
 }
 
-vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
+vg_status vg_repair_boundary_new(const struct vg_doubled *doubled,
+                                 const struct vg_mesh *boundary, size_t n,
                                  const struct vg_cluster_cells *block,
                                  struct vg_repair_boundary *out,
                                  struct vg_error *err)
@@ -56,7 +63,8 @@ vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
   for (size_t k = 0; k < n; k++)
     for (size_t i = 0; i < block[k].n_point; i++)
       if (block[k].name[i] < n_point) any = in[block[k].name[i]] = 1;
-  if (any && list(boundary, in, out) < 0) st = vg_fail_memory(err, "repairs");
+  if (any && list(doubled, boundary, in, out) < 0)
+    st = vg_fail_memory(err, "repairs");
   free(in);
   return st;
 }

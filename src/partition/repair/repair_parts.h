@@ -318,9 +318,10 @@ struct vg_repair_boundary {
   uint32_t (*tri)[3]; /* [n] Smallest point first, ascending. */
 };
 
-/** Selects the triangles between the points of block [n]; boundary may be
- * NULL. */
-vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
+/** Selects the triangles between the points of block [n], which are first
+ * copies (partition/cut/doubled.h); boundary may be NULL. */
+vg_status vg_repair_boundary_new(const struct vg_doubled *doubled,
+                                 const struct vg_mesh *boundary, size_t n,
                                  const struct vg_cluster_cells *block,
                                  struct vg_repair_boundary *out,
                                  struct vg_error *err);

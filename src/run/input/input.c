@@ -70,6 +70,7 @@ void vg_boundary_release(struct vg_boundary *b)
   vg_boundary_forget_gaps(b);
   if (b->common.data) vg_shmem_release(&b->common);
   else vg_mesh_release(&b->surface);
+  vg_mesh_release(&b->inner);
   vg_surface_report_release(&b->check);
   vg_flow_release(&b->flow);
   vg_remeshing_release(&b->remeshing);

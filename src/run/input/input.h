@@ -127,6 +127,9 @@ struct vg_boundary {
   struct vg_notes *notes;     /* Borrowed. */
   int threads;                /* Number of threads; 0: one per core. */
   struct vg_mesh surface;
+  struct vg_mesh inner;          /* Triangles of inner surfaces until they are
+                                    part of the closed surface; patches are
+                                    those of `surface`. */
   struct vg_shmem common;        /* Memory of its arrays if the ranks of a node
                                     share them. */
   struct vg_cad_model model;     /* As in struct vg_read. */

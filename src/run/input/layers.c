@@ -598,6 +598,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   if (!n_wall) return VG_OK;
   VG_TRY(make_requests(s, b, h, err));
   VG_TRY(extend_walls(s, b, err));
+  VG_TRY(vg_walls_check_inner(&b->surface, s->reason, err));
   note_choice(s, b);
   give_conditions(s, b);
   set_options(s, set);

@@ -18,6 +18,21 @@ vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
 /** 1 if patch i of the surface is a cap that closes a hole. */
 int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 
+/* run/input/inner_surface.c
+ * ------------------------------------------------------ */
+
+/** Moves the triangles of the patches in the setting `baffles` to b->inner, and
+ * adds patches for their other sides. VG_ERR_INPUT for patches that the surface
+ * does not have, VG_ERR_UNSUPPORTED for settings that change the surface. */
+vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err);
+
+/** Checks the closed surface together with b->inner, which has triangles, and
+ * adds both sides of these to the surface. If there are defects, b->check and
+ * b->surface have them, for reports. VG_ERR_GEOMETRY for inner surfaces that
+ * are not in the fluid. */
+vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
+                                struct vg_error *err);
+
 /* run/input/remesh_boundary.c, surface_sizes.c, put_back.c
  * --------------------------- */
 

@@ -138,11 +138,9 @@ static vg_status take_rows(struct vg_boundary *b, size_t n,
     vg_settings_release(&view);
     return st;
   }
-  for (size_t i = 0; i < n; i++) {
-    size_t at = vg_mesh_find_patch(&b->surface, old[i].id);
-
-    if (at != SIZE_MAX) view.patch[at].hard = old[i].hard;
-  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < view.n_patch; k++)
+      if (view.patch[k].id == old[i].id) view.patch[k].hard = old[i].hard;
   free(b->row);
   b->row = view.patch;
   b->n_row = view.n_patch;
@@ -536,8 +534,13 @@ vg_status vg_boundary_shape(struct vg_read *read,
   vg_mesh_keep_boundary(&b->surface);
   b->require_bc = has_conditions(&b->surface);
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
+  if (*read->settings.baffles) {
+    VG_TRY(split_quads(&b->surface, b->notes, err));
+    VG_TRY(vg_boundary_take_inner(b, err));
+  }
   vg_boundary_note_slivers(b);
   st = try_shapes(b, o, show, err);
+done:
   /* The message of the library has less detail. */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
@@ -581,6 +584,10 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
   else if (b->flow.kind == VG_FLOW_EXTERNAL || is_open)
     st = complete(b, show, err);
   else st = defects(b, show, err);
+  if (st >= 0 && b->inner.n_tri) {
+    VG_TRY(vg_boundary_put_inner(b, show, err));
+    st = defects(b, show, err);
+  }
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

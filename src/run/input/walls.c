@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/copies.h"
 #include "core/surface/surface_swap.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
@@ -160,6 +161,7 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
 {
   const struct vg_patch *patch = &b->surface.patch[i];
 
+  if (patch->inner) return VG_WALL_NOT;
   if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
@@ -238,6 +240,46 @@ static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
     b->read->files.stem, list);
 }
 
+static vg_status refuse_inner(const struct vg_mesh *m, const char *why,
+                              size_t i, const double *x, struct vg_error *err)
+{
+  char at[80] = "";
+
+  if (x) snprintf(at, sizeof at, " at (%g, %g, %g)", x[0], x[1], x[2]);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "patch %d%s%s %s%s: layers next to inner surfaces are not "
+                 "supported; take the patch out of the list walls, or set grow "
+                 "no for it in the table layers",
+                 (int)m->patch[i].id, *m->patch[i].name ? " " : "",
+                 m->patch[i].name, why, at);
+}
+
+vg_status vg_walls_check_inner(const struct vg_mesh *m,
+                               const enum vg_wall_reason *reason,
+                               struct vg_error *err)
+{
+  uint8_t *on = vg_calloc(m->n_point, 1);
+  vg_status st = on ? VG_OK : vg_fail_memory(err, "the patches");
+
+  assert(reason || !m->n_patch);
+  for (size_t i = 0; st >= 0 && i < m->n_patch; i++)
+    if (m->patch[i].inner && reason[i] != VG_WALL_NOT)
+      st = refuse_inner(m,
+                        "is an inner surface, and layers are requested on it",
+                        i, NULL, err);
+  for (size_t t = 0; st >= 0 && t < 3 * m->n_tri; t++)
+    if (m->patch[m->tri_patch[t / 3]].inner) on[m->tri[t / 3][t % 3]] = 1;
+  for (size_t t = 0; st >= 0 && t < 3 * m->n_tri; t++) {
+    const uint32_t patch = m->tri_patch[t / 3], p = m->tri[t / 3][t % 3];
+
+    if (reason[patch] != VG_WALL_NOT && on[p])
+      st = refuse_inner(m, "has layers and touches an inner surface", patch,
+                        m->point[p], err);
+  }
+  free(on);
+  return st;
+}
+
 vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err)
@@ -274,7 +316,7 @@ vg_status vg_walls_extend(const struct vg_boundary *b,
   if (!is_wall) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < m->n_patch; i++) {
     is_wall[i] = reason[i] != VG_WALL_NOT;
-    may[i] = !is_wall[i] && i < n_own(b) &&
+    may[i] = !is_wall[i] && i < n_own(b) && !m->patch[i].inner &&
              vg_settings_layer_row(&b->read->settings, m->patch[i].id).grow !=
                VG_ANSWER_NO;
   }
@@ -319,6 +361,7 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   vg_status st;
 
   /* Triangles in a stretched metric may have small angles. */
+  if (vg_mesh_has_inner(&b->surface)) return VG_OK;
   b->is_swapped = answer == VG_ANSWER_AUTO ? !vg_boundary_is_stretched(b) &&
                                                has_slivers(&b->surface, reason)
                                            : answer == VG_ANSWER_YES;

@@ -41,6 +41,12 @@ vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
 
+/** VG_ERR_UNSUPPORTED if layers grow on an inner surface, or on a patch that
+ * touches one. reason: [m->n_patch] */
+vg_status vg_walls_check_inner(const struct vg_mesh *m,
+                               const enum vg_wall_reason *reason,
+                               struct vg_error *err);
+
 /** Finds patches without layers in the plane of a wall, over which the layers
  * of the wall continue (vg_slides_extend). Patches with `grow` no in the layers
  * table and patches that this program added stay without layers.

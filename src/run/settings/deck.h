@@ -45,7 +45,8 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
                         const char *comment, enum vg_deck_form form,
                         struct vg_error *err);
 
-/** Append one row to the patch table for every patch of m. */
+/** Append one row to the patch table for every patch of m, except the backs of
+ * inner surfaces, which are not in the input. */
 vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
                              struct vg_error *err);
 

@@ -255,6 +255,7 @@ vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
     struct vg_patch_row row = { .id = m->patch[i].id,
                                 .bc = defining_code(&m->patch[i], axis[i]) };
 
+    if (m->patch[i].inner == VG_INNER_BACK) continue; /* not in the input */
     snprintf(row.name, sizeof row.name, "%s", m->patch[i].name);
     st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
   }

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/mesh/copies.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
+
+struct copies {
+  const struct vg_mesh *m;
+  uint32_t *first; /* [n_point] first point of triangles at this place */
+  uint8_t *on;     /* [n_point] 1: of a triangle, 2: of one that lies back to
+                      back on another */
+  size_t n;        /* points that are not the first ones at their places */
+};
+
+static int is_same_place(const double a[3], const double b[3])
+{
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static vg_status find_first(struct copies *c, struct vg_error *err)
+{
+  const struct vg_mesh *m = c->m;
+  struct vg_table table;
+
+  if (vg_table_init(&table, m->n_point))
+    return vg_fail_memory(err, "the table of points");
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3; k++) c->on[m->tri[t][k]] = 1;
+  for (uint32_t p = 0; p < m->n_point; p++) {
+    uint32_t *at;
+
+    if (!c->on[p]) continue;
+    VG_TABLE_FIND(&table, at, vg_hash_point(m->point[p]),
+                  is_same_place(m->point[*at], m->point[p]));
+    if (*at == VG_TABLE_FREE) *at = p;
+    else c->n++;
+    c->first[p] = *at;
+  }
+  vg_table_release(&table);
+  return VG_OK;
+}
+
+/* The corners of triangle t by their first copies, ascending. Returns the
+ * parity of the order. */
+static uint32_t corners_of(const struct copies *c, size_t t, uint32_t v[3])
+{
+  for (int k = 0; k < 3; k++) v[k] = c->first[c->m->tri[t][k]];
+  return vg_order3(v);
+}
+
+static int is_opposite(const struct copies *c, size_t t, size_t u)
+{
+  uint32_t v[3], w[3];
+
+  return corners_of(c, t, v) != corners_of(c, u, w) && v[0] == w[0] &&
+         v[1] == w[1] && v[2] == w[2];
+}
+
+static vg_status mark_sides(struct copies *c, struct vg_error *err)
+{
+  const struct vg_mesh *m = c->m;
+  struct vg_table table;
+
+  if (vg_table_init(&table, m->n_tri))
+    return vg_fail_memory(err, "the triangles of the boundary");
+  for (uint32_t t = 0; t < m->n_tri; t++) {
+    uint32_t v[3], *at;
+
+    corners_of(c, t, v);
+    VG_TABLE_FIND(&table, at, vg_tri_key_hash(vg_tri_key(v)),
+                  is_opposite(c, t, *at));
+    if (*at == VG_TABLE_FREE) {
+      *at = t;
+      continue;
+    }
+    for (int k = 0; k < 3; k++) c->on[m->tri[t][k]] = c->on[m->tri[*at][k]] = 2;
+  }
+  vg_table_release(&table);
+  return VG_OK;
+}
+
+vg_status vg_mesh_copies(const struct vg_mesh *m, uint64_t *n,
+                         struct vg_error *err)
+{
+  struct copies c = { .m = m };
+  uint64_t count = 0;
+  vg_status st = VG_OK;
+
+  assert(m && n);
+  c.first = vg_alloc(m->n_point, sizeof *c.first);
+  c.on = vg_calloc(m->n_point, 1);
+  if (!c.first || !c.on) VG_TRY(vg_fail_memory(err, "the table of points"));
+  VG_TRY(find_first(&c, err));
+  if (c.n) VG_TRY(mark_sides(&c, err));
+  for (uint32_t p = 0; c.n && p < m->n_point; p++)
+    count += c.on[p] == 2 && c.first[p] != p && c.on[c.first[p]] == 2;
+  *n = count;
+done:
+  free(c.first);
+  free(c.on);
+  return st;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/mesh/copies.h: points that a mesh has more than once because it has
+ * inner surfaces. Uses mesh.h. */
+#ifndef VG_CORE_MESH_COPIES_H
+#define VG_CORE_MESH_COPIES_H
+
+#include "core/mesh/mesh.h"
+
+/** 1 if a patch is part of an inner surface. */
+static inline int vg_mesh_has_inner(const struct vg_mesh *m)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].inner) return 1;
+  return 0;
+}
+
+/** Count the points that have the coordinates of an earlier one, both being
+ * corners of triangles that lie back to back on another triangle: the sides of
+ * an inner surface, between which there is nothing. Other points that coincide
+ * are defects.
+ *
+ * @param m  triangles of a boundary; quadrilaterals and cells are ignored. Node
+ *           indices are in range
+ * @param n  out, unchanged on failure
+ * O(n_point + n_tri). VG_ERR_MEMORY. */
+vg_status vg_mesh_copies(const struct vg_mesh *m, uint64_t *n,
+                         struct vg_error *err);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/sides/inner.h: inner surfaces, sheets of zero thickness with fluid on
+ * both sides.
+ *
+ *        _______________                _______________
+ *       |               |              |      ___      |   A sheet becomes two
+ *       |      ---      |      ->      |     (___)     |   layers of triangles,
+ *       |___|___________|              |__| |__________|   here drawn apart.
+ *
+ * A boundary with sheets as doubled here is closed, and every edge on it has as
+ * many triangles in one direction as in the other. Points inside a sheet occur
+ * once for each sector around them (core/sides/sides.h), points of free edges
+ * once. */
+#ifndef VG_CORE_SIDES_INNER_H
+#define VG_CORE_SIDES_INNER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "core/mesh/mesh.h"
+
+struct vg_inner_report {
+  size_t n_tri;   /* triangles of the sheets, each counted once */
+  size_t n_cut;   /* edges cut because a triangle had all its corners on free
+                     edges, so that its two sides had the same points */
+  size_t n_point; /* points that were added as copies */
+};
+
+/** Double the sheets of a boundary.
+ *
+ * @param m         triangles into the fluid, closed without the sheets, whose
+ *                  triangles occur once, of any orientation. Points with the
+ *                  same coordinates are one point. No two triangles intersect.
+ *                  Untouched on failure
+ * @param is_inner  [m->n_patch] 1: the patch is a sheet
+ * @param back      [m->n_patch] patch of the triangles of the other side, which
+ *                  are appended in the order of the first ones; both may be
+ *                  the same
+ *
+ * Copies of points follow the other points. VG_ERR_GEOMETRY, with the place, if
+ * a sheet is not in the fluid, or touches a surface in a single point.
+ * VG_ERR_MEMORY. O(n log n), plus O(n) for each sheet that is connected with no
+ * other surface. */
+vg_status vg_inner_double(struct vg_mesh *m, const uint8_t *is_inner,
+                          const uint32_t *back, struct vg_inner_report *report,
+                          struct vg_error *err);
+
+#endif

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/sides/inner_parts.h: the steps that double sheets. Private to
+ * core/sides. */
+#ifndef VG_CORE_SIDES_INNER_PARTS_H
+#define VG_CORE_SIDES_INNER_PARTS_H
+
+#include "core/sides/inner.h"
+#include "core/sides/sides.h"
+
+struct vg_inner_work {
+  struct vg_mesh *m;
+  const uint8_t *is_inner; /* [m->n_patch] */
+  struct vg_inner_report *report;
+  struct vg_sides sides; /* of the triangles of m */
+};
+
+static inline int vg_is_sheet(const struct vg_inner_work *s, size_t tri)
+{
+  return s->is_inner[s->m->tri_patch[tri]];
+}
+
+/** VG_ERR_GEOMETRY if a sheet is not in the fluid or touches a surface in a
+ * point. (inner_check.c) */
+vg_status vg_inner_check(const struct vg_inner_work *s, struct vg_error *err);
+
+/** Cut edges of triangles of which all corners have one sector, so that both
+ * sides would have the same points: the longest edge that has other triangles,
+ * whose middle has two sectors or more. s->sides is out of date afterwards if
+ * *n_cut, their number, is not 0. (inner_cut.c) */
+vg_status vg_inner_cut(struct vg_inner_work *s, size_t *n_cut,
+                       struct vg_error *err);
+
+#endif

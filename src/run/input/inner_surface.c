@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Inner surfaces: patches with fluid on both sides. They are taken out of the
+ * surface before it is checked and closed, and put back, doubled, when it
+ * bounds a fluid. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/sides/inner.h"
+#include "run/input/shape_parts.h"
+#include "run/settings/patch_names.h"
+#include "run/settings/plan_options.h"
+
+/* --- out of the surface ----------------------------------------------------
+ */
+
+/* Settings that change triangles or points of the surface, so that sheets would
+ * no longer share edges with it. */
+static vg_status refuse_changes(const struct vg_boundary *b,
+                                struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const char *what = s->weld > 0                  ? "weld"
+                   : s->wrap > 0                  ? "wrap"
+                   : s->remesh == VG_ANSWER_YES   ? "remesh"
+                   : s->swap == VG_ANSWER_YES     ? "swap"
+                   : b->model.cad                 ? "a CAD model"
+                   : strcmp(s->mesher, "builtin") ? "mesher"
+                   : vg_boundary_is_stretched(b)  ? "stretched sizes"
+                                                  : NULL;
+
+  if (!what) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: inner surfaces (baffles %s) cannot be combined with %s; "
+                 "change that setting, and mesh a surface that has the "
+                 "requested triangles already",
+                 b->read->files.stem, s->baffles, what);
+}
+
+static vg_status refuse_all(const struct vg_boundary *b, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: all triangles are in inner surfaces (baffles %s), so "
+                 "that no surface bounds the fluid; add an outer boundary to "
+                 "the surface, or remove patches from the list",
+                 b->read->files.stem, b->read->settings.baffles);
+}
+
+/* Adds a patch for the other side of patch i: NAME_back, with a new number and
+ * the same conditions. */
+static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
+{
+  struct vg_mesh *m = &b->surface;
+  struct vg_patch *back;
+  char name[VG_NAME_MAX] = "";
+  int32_t id = 0;
+  size_t at;
+
+  for (size_t k = 0; k < m->n_patch; k++)
+    if (m->patch[k].id > id) id = m->patch[k].id;
+  if (id == INT32_MAX)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "no number is left for the back of patch %d; renumber the "
+                   "patches",
+                   (int)m->patch[i].id);
+  if (*m->patch[i].name)
+    snprintf(name, sizeof name, "%.*s_back", (int)sizeof name - 6,
+             m->patch[i].name);
+  at = vg_mesh_add_patch(m, id + 1, name);
+  if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
+  back = &m->patch[at];
+  back->bc = m->patch[i].bc;
+  back->bc_fun3d = m->patch[i].bc_fun3d;
+  back->family = m->patch[i].family;
+  m->patch[i].inner = VG_INNER_FRONT;
+  back->inner = VG_INNER_BACK;
+  vg_note(
+    b->notes,
+    "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
+    (int)m->patch[i].id, *name ? " " : "", m->patch[i].name, (int)back->id,
+    *name ? " " : "", back->name);
+  return VG_OK;
+}
+
+/* Moves the triangles of inner patches to `inner`, which gets all points. */
+static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
+                           struct vg_error *err)
+{
+  size_t n = 0;
+
+  inner->tri = vg_alloc(m->n_tri, sizeof *inner->tri);
+  inner->tri_patch = vg_alloc(m->n_tri, sizeof *inner->tri_patch);
+  inner->point = vg_alloc(m->n_point, sizeof *inner->point);
+  if (!inner->tri || !inner->tri_patch || !inner->point)
+    return vg_fail_memory(err, "the inner surfaces");
+  if (m->n_point) memcpy(inner->point, m->point, m->n_point * sizeof *m->point);
+  inner->n_point = m->n_point;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const uint32_t patch = m->tri_patch[t];
+    struct vg_mesh *to = m->patch[patch].inner ? inner : m;
+    const size_t at = to == m ? n++ : inner->n_tri++;
+
+    memmove(to->tri[at], m->tri[t], sizeof *m->tri);
+    to->tri_patch[at] = patch;
+  }
+  m->n_tri = n;
+  return VG_OK;
+}
+
+vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
+{
+  struct vg_mesh *m = &b->surface;
+  const size_t n_patch = m->n_patch;
+  uint8_t *on = vg_calloc(n_patch, 1);
+  vg_status st = VG_OK;
+
+  if (!on) return vg_fail_memory(err, "the patches");
+  VG_TRY(refuse_changes(b, err));
+  VG_TRY(vg_patch_list_mark("baffles", b->read->settings.baffles, m, n_patch,
+                            on, err));
+  for (size_t i = 0; i < n_patch; i++)
+    if (on[i]) VG_TRY(add_back(b, i, err));
+  VG_TRY(split_off(m, &b->inner, err));
+  if (!m->n_tri) VG_TRY(refuse_all(b, err));
+  vg_note(
+    b->notes,
+    "the figures of the surface do not include the %zu triangles of inner "
+    "surfaces, which are checked when the surface is closed",
+    b->inner.n_tri);
+  b->is_remeshed = 0;
+done:
+  free(on);
+  return st;
+}
+
+/* --- check -----------------------------------------------------------------
+ */
+
+/* The surface with the inner triangles at the end, and points of the same place
+ * as one. */
+static vg_status combine(const struct vg_boundary *b, struct vg_mesh *out,
+                         struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface, *inner = &b->inner;
+  const size_t n_point = m->n_point + inner->n_point;
+  const size_t n_tri = m->n_tri + inner->n_tri;
+  size_t cap[3] = { m->n_point, m->n_tri, m->n_tri };
+  vg_status st;
+
+  VG_TRY(vg_mesh_copy(out, m, err));
+  if (vg_reserve(&out->point, &cap[0], n_point, sizeof *out->point) ||
+      vg_reserve(&out->tri, &cap[1], n_tri, sizeof *out->tri) ||
+      vg_reserve(&out->tri_patch, &cap[2], n_tri, sizeof *out->tri_patch))
+    return vg_fail_memory(err, "the inner surfaces");
+  memcpy(out->point + m->n_point, inner->point,
+         inner->n_point * sizeof *inner->point);
+  for (size_t t = 0; t < inner->n_tri; t++) {
+    for (int k = 0; k < 3; k++)
+      out->tri[m->n_tri + t][k] = (uint32_t)m->n_point + inner->tri[t][k];
+    out->tri_patch[m->n_tri + t] = inner->tri_patch[t];
+  }
+  out->n_point = n_point;
+  out->n_tri = n_tri;
+  st = vg_surface_merge_points(out, err);
+done:
+  return st;
+}
+
+/* Findings that are not defects of inner surfaces: free edges, edges of three
+ * and more triangles, any orientation. The surface without them has no defects,
+ * and its conditions and shells are known. */
+static int is_legal(const struct vg_defect *d, size_t n_wall)
+{
+  switch (d->kind) {
+  case VG_DEFECT_OPEN_EDGE:
+  case VG_DEFECT_ORIENTATION: return d->face[0] >= n_wall;
+  case VG_DEFECT_NONMANIFOLD_EDGE:
+  case VG_DEFECT_SHELL:
+  case VG_DEFECT_NO_BC: return 1;
+  default: return 0;
+  }
+}
+
+static void drop_legal(struct vg_surface_report *r, size_t n_wall, size_t n_tri)
+{
+  size_t n = 0;
+
+  memset(r->face_kinds, 0, n_tri * sizeof *r->face_kinds);
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const struct vg_defect *d = &r->defect[i];
+
+    if (is_legal(d, n_wall)) {
+      r->count[d->kind]--;
+      continue;
+    }
+    for (int k = 0; k < 2; k++)
+      if (d->face[k] != SIZE_MAX) r->face_kinds[d->face[k]] |= 1u << d->kind;
+    r->defect[n++] = *d;
+  }
+  r->n_defect = n;
+}
+
+/* Checks surface and inner surfaces together. Only if there are defects, do
+ * they replace surface and check of b, for reports. */
+static vg_status check_together(struct vg_boundary *b, struct vg_mesh *all,
+                                struct vg_display *show, struct vg_error *err)
+{
+  struct vg_surface_check_options o = vg_options_check(&b->read->settings);
+  struct vg_surface_report r = { .n_defect = 0 };
+  const size_t n_wall = b->surface.n_tri;
+  vg_status st;
+
+  o.repair = 0;
+  o.require_bc = 0;
+  o.external = -1;
+  o.threads = b->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_surface_check(all, &o, &r, err));
+  drop_legal(&r, n_wall, all->n_tri);
+  if (!r.n_defect) goto done;
+  vg_surface_report_release(&b->check);
+  b->check = r;
+  r = (struct vg_surface_report){ .n_defect = 0 };
+  vg_mesh_move(&b->surface, all);
+done:
+  vg_surface_report_release(&r);
+  return st;
+}
+
+/* --- into the boundary ------------------------------------------------------
+ */
+
+/* The check of the boundary also has the triangles that were added. */
+static vg_status extend_check(struct vg_surface_report *r, size_t from,
+                              size_t to, struct vg_error *err)
+{
+  uint32_t *kinds = vg_realloc(r->face_kinds, to, sizeof *kinds), *shell;
+
+  if (kinds) r->face_kinds = kinds;
+  shell = vg_realloc(r->tri_shell, to, sizeof *shell);
+  if (shell) r->tri_shell = shell;
+  if (!kinds || !shell) return vg_fail_memory(err, "the surface check");
+  for (size_t t = from; t < to; t++) {
+    kinds[t] = 0;
+    shell[t] = UINT32_MAX;
+  }
+  return VG_OK;
+}
+
+static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
+                           struct vg_error *err)
+{
+  const size_t n_patch = all->n_patch;
+  uint8_t *is_inner = vg_calloc(n_patch, 1);
+  uint32_t *back = vg_calloc(n_patch, sizeof *back);
+  struct vg_inner_report r;
+  uint32_t next = 0;
+  vg_status st = is_inner && back ? VG_OK : vg_fail_memory(err, "the patches");
+
+  VG_TRY(st);
+  /* Back sides were added in the order of the patches. */
+  for (uint32_t i = 0; i < n_patch; i++) {
+    is_inner[i] = all->patch[i].inner == VG_INNER_FRONT;
+    if (!is_inner[i]) continue;
+    while (all->patch[next].inner != VG_INNER_BACK) next++;
+    back[i] = next++;
+  }
+  VG_TRY(vg_inner_double(all, is_inner, back, &r, err));
+  VG_TRY(extend_check(&b->check, b->surface.n_tri, all->n_tri, err));
+  vg_mesh_move(&b->surface, all);
+  vg_note(b->notes,
+          "inner surfaces: %zu triangles with fluid on both sides; %zu copies "
+          "of points were added",
+          r.n_tri, r.n_point);
+  if (r.n_cut)
+    vg_note(b->notes,
+            "%zu edges of inner surfaces were cut, because triangles with all "
+            "corners on free edges would have the same points on both sides",
+            r.n_cut);
+done:
+  free(is_inner);
+  free(back);
+  return st;
+}
+
+vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
+                                struct vg_error *err)
+{
+  struct vg_mesh all = VG_MESH_INIT;
+  struct vg_error why = VG_ERROR_INIT;
+  vg_status st;
+
+  assert(b->inner.n_tri);
+  vg_display_update(show, "inner surfaces", b->inner.n_tri, 0);
+  VG_TRY(combine(b, &all, err));
+  VG_TRY(check_together(b, &all, show, err));
+  if (b->check.n_defect) goto done;
+  st = put_sides(b, &all, &why);
+  if (st < 0) st = vg_fail(err, st, "%s: %s", b->read->files.stem, why.text);
+  else vg_mesh_release(&b->inner);
+done:
+  vg_mesh_release(&all);
+  return st;
+}

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Inner surfaces: patches of a box with fluid on both sides.
+needs tetgen
+
+# duct NAME SHEET...: a closed box from 0 to 1 of 8 x 8 quadrilaterals a side,
+# patches 1 to 6, and sheets "ID N M  ox oy oz  ux uy uz  vx vy vz" of N x M,
+# as NAME.stl with a solid for each patch.
+duct() {
+  local name=$1
+  shift
+  { printf '%s\n' "w1 8 8  0 0 0  0 1 0  1 0 0" "w2 8 8  0 0 1  1 0 0  0 1 0" \
+      "w3 8 8  0 0 0  1 0 0  0 0 1" "w4 8 8  0 1 0  0 0 1  1 0 0" \
+      "w5 8 8  0 0 0  0 0 1  0 1 0" "w6 8 8  1 0 0  0 1 0  0 0 1" "$@"; } |
+    awk 'function at(i, j, k) {
+        return sprintf("%.17g", $(4 + k) + $(7 + k) * i / $2 + $(10 + k) * j / $3)
+      }
+      function corner(i, j) {
+        print "vertex", at(i, j, 0), at(i, j, 1), at(i, j, 2)
+      }
+      function facet(a, b, c, d, e, f) {
+        print "facet normal 0 0 0\nouter loop"
+        corner(a, b); corner(c, d); corner(e, f)
+        print "endloop\nendfacet"
+      }
+      { print "solid " $1
+        for (j = 0; j < $3; j++) for (i = 0; i < $2; i++) {
+          facet(i, j, i + 1, j, i + 1, j + 1)
+          facet(i, j, i + 1, j + 1, i, j + 1)
+        }
+        print "endsolid " $1 }' >"$name.stl"
+}
+
+# valid NAME OPTION...: meshes NAME.stl with the options.
+valid() {
+  local name=$1
+  shift
+  vanguard mesh "$name.stl" --flow internal --quiet --write b8.ugrid \
+    --out "o_$name" --hmax 0.12 "$@"
+  exits 0
+  vanguard check "o_$name/$name.b8.ugrid"
+  exits 0
+  says out "valid"
+}
+
+# A fin that stands on a wall, a free plate that ends on a line of the fin, and
+# a wall across, each with free edges or without.
+fin="fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5"
+plate="plate 2 4  0.5 0.25 0.25  0.25 0 0  0 0.5 0"
+duct fin "$fin"
+duct both "$fin" "$plate"
+duct across "mid 8 8  0.5 0 0  0 1 0  0 0 1"
+valid fin --baffles fin
+valid both --baffles 'fin,plate'
+valid across --baffles 7
+
+# The patches of both sides, and the note on them.
+vanguard mesh both.stl --flow internal --baffles fin,plate --hmax 0.12 \
+  --write b8.ugrid,vtu,su2 --out named
+exits 0
+says out "inner surfaces: 52 triangles"
+says out "patch 7 fin is an inner surface (baffles); its back is patch 9 fin_back"
+for name in fin fin_back plate plate_back; do
+  says named/both.su2 "MARKER_TAG= $name"
+done
+
+# The deck with all settings makes the same mesh.
+vanguard mesh both.stl --deck named/both.resolved.deck --quiet --out again \
+  --write b8.ugrid
+exits 0
+same named/both.b8.ugrid again/both.b8.ugrid
+
+# In an external flow: a disk behind a box, with layers on the box.
+duct disk "disk 4 4  1.5 0.25 0.25  0 0.5 0  0 0 0.5"
+vanguard mesh disk.stl --flow external --baffles disk --walls 'w*' \
+  --first 0.02 --farfield-lengths 4 --quiet --write b8.ugrid --out ext
+exits 0
+vanguard check ext/disk.b8.ugrid
+exits 0
+
+# The two halves on both sides of the wall across are separate.
+vanguard check o_across/across.b8.ugrid
+says out "connected regions: 2"
+
+# Same bytes with threads and in any decomposition.
+ways="advancing octree"
+vanguard --version --verbose
+grep -q "METIS" out && ways="$ways discrete"
+for way in $ways; do
+  for threads in 1 3; do
+    vanguard mesh both.stl --flow internal --quiet --baffles fin,plate \
+      --decompose $way --leaf-cells 1500 --hmax 0.08 --threads $threads \
+      --write b8.ugrid --out $way$threads
+    exits 0
+  done
+  same ${way}1/both.b8.ugrid ${way}3/both.b8.ugrid
+  vanguard check ${way}1/both.b8.ugrid
+  exits 0
+done
+
+# Layers grow on walls that no inner surface touches.
+duct free "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5"
+valid free --baffles disk --walls 'w*' --first 0.004
+vanguard mesh fin.stl --flow internal --baffles fin --walls 'w*' --first 0.004
+exits 1
+says err "patch 1 w1 has layers and touches an inner surface at (0.5, "
+vanguard mesh free.stl --flow internal --baffles disk --walls 'w*,disk' \
+  --first 0.004
+exits 1
+says err "patch 7 disk is an inner surface, and layers are requested on it"
+
+# --- refused -----------------------------------------------------------------
+
+duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
+vanguard mesh cut.stl --flow internal --baffles cut
+exits 1
+says out "self-intersection: patch 2"
+duct out "out 2 2  2 0 0  1 0 0  0 1 0"
+vanguard mesh out.stl --flow internal --baffles out
+exits 1
+says err "patch 7 out, an inner surface, is not in the fluid at (2."
+vanguard mesh fin.stl --flow internal --baffles fan
+exits 1
+says err "fan"
+vanguard mesh fin.stl --flow internal --baffles '1-7'
+exits 1
+says err "all triangles are in inner surfaces"
+vanguard mesh fin.stl --flow internal --baffles fin --weld 1e-6
+exits 1
+says err "cannot be combined with weld"
+vanguard mesh fin.stl --flow internal --baffles fin --mesher hxt
+exits 1
+says err "cannot be combined with mesher"
+absent fin.b8.ugrid fin.cogsg
+
+# Without the option the fin is a defect.
+vanguard mesh fin.stl --flow internal
+exits 1
+says err "16 defects"

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Inner surfaces: sheets in a box are doubled, and the void on both sides is
+ * filled, with the same mesh in any decomposition. */
+#define _GNU_SOURCE
+#include "advance_support.h"
+
+#include "core/mesh/copies.h"
+#include "core/sides/inner.h"
+#include "core/surface/surface_check.h"
+#include "partition/discrete/discrete.h"
+#include "partition/graph/graph.h"
+#include "partition/octree/octree.h"
+
+/* Doubles patch `front`, the last one; its back is added. */
+static vg_status put_back(struct vg_mesh *m, struct vg_inner_report *r,
+                          struct vg_error *err)
+{
+  uint8_t is_inner[9] = { 0 };
+  uint32_t back[9] = { 0 };
+  const size_t front = m->n_patch - 1;
+
+  assert_int_equal(vg_surface_merge_points(m, err), VG_OK);
+  is_inner[front] = 1;
+  back[front] = (uint32_t)vg_mesh_add_patch(m, 50, "sheet_back");
+  m->patch[front].inner = VG_INNER_FRONT;
+  m->patch[front + 1].inner = VG_INNER_BACK;
+  return vg_inner_double(m, is_inner, back, r, err);
+}
+
+/* A parallelogram of n x n quadrilaterals from o along u and v. */
+static void add_sheet(struct vg_mesh *m, const double o[3], const double u[3],
+                      const double v[3], int n)
+{
+  const size_t patch = vg_mesh_add_patch(m, 40, "sheet");
+  const uint32_t first = (uint32_t)m->n_point, row = (uint32_t)n + 1;
+
+  for (uint32_t k = 0; k < row * row; k++) {
+    const double s = (double)(k % row) / n, t = (double)(k / row) / n;
+
+    shape_point(m, o[0] + s * u[0] + t * v[0], o[1] + s * u[1] + t * v[1],
+                o[2] + s * u[2] + t * v[2]);
+  }
+  for (uint32_t k = 0; k < row * row - row; k++) {
+    const uint32_t a = first + k;
+
+    if (k % row == row - 1) continue;
+    shape_tri(m, a, a + 1, a + row + 1, patch);
+    shape_tri(m, a, a + row + 1, a + row, patch);
+  }
+}
+
+static const double x[3] = { 1, 0, 0 }, y[3] = { 0, 1, 0 };
+
+/* A box from -1 to 1 of 4 x 4 x 4 and a sheet of n x n. */
+static vg_status make(struct vg_mesh *m, const double o[3], const double u[3],
+                      const double v[3], int n, struct vg_inner_report *r,
+                      struct vg_error *err)
+{
+  memset(m, 0, sizeof *m);
+  shape_box(m, 4, 1);
+  add_sheet(m, o, u, v, n);
+  return put_back(m, r, err);
+}
+
+/* Closed, of unchanged volume, and every copy is known to be one. */
+static void expect(const struct vg_mesh *m, const struct vg_inner_report *r,
+                   size_t n_tri, size_t n_cut, size_t n_point)
+{
+  uint64_t n_copy;
+
+  assert_int_equal(r->n_tri, n_tri);
+  assert_int_equal(r->n_cut, n_cut);
+  assert_int_equal(r->n_point, n_point);
+  assert_int_equal(vg_mesh_open_edges(m), 0);
+  assert_true(fabs(scene_volume(m) - 8) < 1e-12);
+  assert_int_equal(vg_mesh_copies(m, &n_copy, NULL), VG_OK);
+  assert_int_equal(n_copy, n_point);
+  assert_true(vg_mesh_has_inner(m));
+}
+
+static void a_free_sheet(void **state)
+{
+  const double o[3] = { -.5, -.5, .1 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, x, y, 4, &r, NULL), VG_OK);
+  /* 32 triangles, two more for each corner with one triangle; copies of the
+   * nine inner points and of the two middles. */
+  expect(&m, &r, 36, 2, 11);
+  vg_mesh_release(&m);
+}
+
+/* One triangle pair: all points are on free edges; the diagonal is cut. */
+static void a_sheet_of_two_triangles(void **state)
+{
+  const double o[3] = { -.5, -.5, .1 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, x, y, 1, &r, NULL), VG_OK);
+  expect(&m, &r, 4, 1, 1);
+  vg_mesh_release(&m);
+}
+
+static void a_single_triangle(void **state)
+{
+  struct vg_inner_report r;
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  shape_box(&m, 2, 1);
+  vg_mesh_add_patch(&m, 40, "sheet");
+  shape_tri(&m, shape_point(&m, 0, 0, 0), shape_point(&m, .5, 0, 0),
+            shape_point(&m, 0, .5, .1), 6);
+  assert_int_equal(put_back(&m, &r, NULL), VG_OK);
+  expect(&m, &r, 3, 1, 1);
+  vg_mesh_release(&m);
+}
+
+/* From the wall at z = -1 up: the middle points of the common edge have one
+ * copy, its ends none. */
+static void a_sheet_on_a_wall(void **state)
+{
+  const double o[3] = { -.5, 0, -1 }, v[3] = { 0, 0, 1 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, x, v, 2, &r, NULL), VG_OK);
+  assert_int_equal(r.n_point, r.n_cut + 2);
+  expect(&m, &r, 8 + 2 * r.n_cut, r.n_cut, r.n_point);
+  vg_mesh_release(&m);
+}
+
+/* The sheet divides the box: every point of it occurs twice. */
+static void a_wall_across(void **state)
+{
+  const double o[3] = { -1, -1, 0 }, u[3] = { 2, 0, 0 }, v[3] = { 0, 2, 0 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, u, v, 4, &r, NULL), VG_OK);
+  expect(&m, &r, 32, 0, 25);
+  vg_mesh_release(&m);
+}
+
+static void expect_refused(const double o[3], const double v[3],
+                           const char *text)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_inner_report r;
+  struct vg_mesh m;
+  size_t n_tri;
+
+  assert_int_equal(make(&m, o, x, v, 2, &r, &err), VG_ERR_GEOMETRY);
+  n_tri = m.n_tri;
+  assert_non_null(strstr(err.text, "patch 40 sheet"));
+  assert_non_null(strstr(err.text, text));
+  assert_int_equal(n_tri, 6 * 32 + 8);
+  vg_mesh_release(&m);
+}
+
+static void sheets_outside(void **state)
+{
+  const double far[3] = { 5, 0, 0 }, on_wall[3] = { -.5, 0, 1 };
+  const double corner[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
+
+  (void)state;
+  expect_refused(far, y, "not in the fluid");
+  expect_refused(on_wall, up, "not in the fluid");
+  expect_refused(corner, up, "single point");
+}
+
+/* --- meshes ----------------------------------------------------------------
+ */
+
+static void sheet_scene(struct scene *s)
+{
+  const double o[3] = { -.5, 0, -1 }, u[3] = { 1, .1, 0 }, v[3] = { 0, .2, 1 };
+  struct vg_inner_report r;
+
+  memset(s, 0, sizeof *s);
+  shape_box(&s->m, 8, 1);
+  add_sheet(&s->m, o, u, v, 8);
+  /* the edge on the wall is not one of its edges: lift it off */
+  for (size_t p = s->m.n_point - 81; p < s->m.n_point; p++)
+    s->m.point[p][2] += .25;
+  assert_int_equal(put_back(&s->m, &r, NULL), VG_OK);
+  s->sizing = shape_sizing(&s->m, 1.2, .12);
+  s->volume = scene_volume(&s->m);
+}
+
+static void any_decomposition(void **state)
+{
+  vg_decomposition_maker *const maker[] = { NULL, vg_discrete_part,
+                                            vg_octree_part };
+  struct scene s;
+
+  (void)state;
+  sheet_scene(&s);
+  for (size_t i = 0; i < sizeof maker / sizeof *maker; i++) {
+    struct vg_partition_options o = options_of(4000, 1, 0);
+    struct mesh_digest expect, d;
+    struct vg_partition_report r;
+
+    if (maker[i] && !vg_graph_is_built()) continue;
+    o.maker = maker[i];
+    o.decomposition.n_part = maker[i] ? 4 : 0;
+    expect = run_of(NULL, &s, &o, 1, &r);
+    assert_true(r.n_leaf > 1);
+    o.threads = 3;
+    o.shuffle = 7;
+    d = run_of(NULL, &s, &o, 0, &r);
+    same_digest(&expect, &d);
+  }
+  scene_end(&s);
+}
+
+/* Leaves that fail are filled again together with adjacent pieces; sides of the
+ * sheet within these stay. */
+static void leaves_that_fail(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  sheet_scene(&s);
+  for (int k = 1; k <= 3; k++) {
+    struct vg_partition_options o = options_of(1500, 2, 0);
+    struct vg_partition_report r;
+
+    o.fail_leaves = .3 * k;
+    o.fail_rounds = 1;
+    run_of(NULL, &s, &o, 1, &r);
+    assert_true(r.n_widened > 0);
+  }
+  scene_end(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_free_sheet),
+    cmocka_unit_test(a_sheet_of_two_triangles),
+    cmocka_unit_test(a_single_triangle),
+    cmocka_unit_test(a_sheet_on_a_wall),
+    cmocka_unit_test(a_wall_across),
+    cmocka_unit_test(sheets_outside),
+    cmocka_unit_test(any_decomposition),
+    cmocka_unit_test(leaves_that_fail),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
