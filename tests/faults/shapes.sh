@@ -9,7 +9,15 @@ octahedron() {
     "1 4 6"
 }
 
-# The same as STL with defects: a triangle is missing, one is reversed, and one
+# The same with a fin on an edge, which has a free end.
+finned() {
+  octahedron
+  printf 'v %s\n' "1.5 1.5 0" "1.5 1 0.5"
+  echo "g fin"
+  printf 'f %s\n' "1 3 7" "1 7 8"
+}
+
+# The octahedron as STL with defects: a triangle is missing, one is reversed, and one
 # is there twice.
 defects() {
   octahedron | awk '
