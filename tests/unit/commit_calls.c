@@ -48,6 +48,8 @@ int __real_renameat2(int da, const char *a, int db, const char *b,
                      unsigned flags);
 int __real_link(const char *a, const char *b);
 int __real_unlink(const char *a);
+int __real_openat(int at, const char *path, int flags, ...);
+int __real_unlinkat(int at, const char *a, int flags);
 int __real_mkdir(const char *a, mode_t mode);
 int __real_rmdir(const char *a);
 int __wrap_open(const char *path, int flags, ...);
@@ -60,6 +62,8 @@ int __wrap_renameat2(int da, const char *a, int db, const char *b,
                      unsigned flags);
 int __wrap_link(const char *a, const char *b);
 int __wrap_unlink(const char *a);
+int __wrap_openat(int at, const char *path, int flags, ...);
+int __wrap_unlinkat(int at, const char *a, int flags);
 int __wrap_mkdir(const char *a, mode_t mode);
 int __wrap_rmdir(const char *a);
 
@@ -143,6 +147,28 @@ int __wrap_open(const char *path, int flags, ...)
   if (fd >= 0 && flags & O_CREAT && is_new && (o = record(CREATE, path, NULL)))
     o->ino = inode(fd);
   return fd;
+}
+
+/* Of the calls with a folder, those for locks are counted and recorded. */
+static int is_lock(int at, const char *path)
+{
+  size_t n = strlen(path);
+
+  return at == AT_FDCWD && n > 5 && !strcmp(path + n - 5, "/lock");
+}
+
+int __wrap_openat(int at, const char *path, int flags, ...)
+{
+  va_list args;
+  mode_t mode = 0;
+
+  if (flags & O_CREAT) {
+    va_start(args, flags);
+    mode = va_arg(args, mode_t);
+    va_end(args);
+  }
+  return is_lock(at, path) ? __wrap_open(path, flags, mode)
+                           : __real_openat(at, path, flags, mode);
 }
 
 static void record_write(int fd, const void *data, ssize_t n, off_t at)
@@ -229,6 +255,11 @@ int __wrap_link(const char *a, const char *b)
   if (!calls.no_link) return recorded(__real_link(a, b), LINK, a, b);
   errno = EPERM;
   return -1;
+}
+
+int __wrap_unlinkat(int at, const char *a, int flags)
+{
+  return is_lock(at, a) ? __wrap_unlink(a) : __real_unlinkat(at, a, flags);
 }
 
 int __wrap_unlink(const char *a)

@@ -255,6 +255,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
   n_defect = b->check.n_defect;
   if (shape >= 0) shape = finish(b, show, &why);
+  vg_problem_note_unused(p, 0, 1u << VG_USE_VOLUME);
   vg_display_clear(show);
   if (a->json) print_json(a, b, &f, body, shape, &why);
   else

@@ -50,8 +50,7 @@ static void answer_page(const struct vg_portal *p, const struct vg_page_view *v,
     if (v) vg_page(p, v, to);
     else vg_page_runs(p, to);
   }
-  if (!to || fclose(to))
-    vg_reply_text(a, 500, "Out of memory.");
+  if (!to || fclose(to)) vg_reply_text(a, 500, "Out of memory.");
 }
 
 /* Files of share/html. */

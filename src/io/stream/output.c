@@ -126,6 +126,9 @@ vg_status vg_output_commit(struct vg_output *out, struct vg_error *err)
   vg_status st = VG_OK;
 
   flush(out);
+  /* A file that replaces another one is on the disk before it does. */
+  if (!out->error && !access(out->path, F_OK) && fsync(out->fd))
+    out->error = errno;
   if (close(out->fd) && !out->error) out->error = errno;
   out->fd = -1;
   if (!out->error && rename(out->part, out->path)) out->error = errno;

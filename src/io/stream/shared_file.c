@@ -48,6 +48,11 @@ static vg_status fail(const struct vg_shared_file *f, const char *what,
 static vg_status no_room(const struct vg_shared_file *f, int error,
                          struct vg_error *err)
 {
+  if (error == EFBIG)
+    return vg_fail(err, VG_ERR_IO,
+                   "%s: the file system or a limit of the shell (ulimit -f) "
+                   "allows no file of %" PRIu64 " bytes: %s",
+                   f->part, f->size, strerror(error));
   return vg_fail(err, VG_ERR_IO,
                  "%s: there is not enough space for %" PRIu64
                  " bytes: %s; free some space or write to another disk",

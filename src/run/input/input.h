@@ -305,8 +305,9 @@ vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
  * @param layers_on  1: layers grow
  * @param judged     bits 1 << enum vg_use of the objects that the command could
  *                   have */
-#define VG_USE_JUDGED_MESH ((1u << VG_USE_N) - 1)
-#define VG_USE_JUDGED_SURFACE (1u << VG_USE_D3M | 1u << VG_USE_CAD)
+#define VG_USE_JUDGED_MESH ((1u << VG_USE_VOLUME) - 1)
+#define VG_USE_JUDGED_SURFACE                                                  \
+  (1u << VG_USE_D3M | 1u << VG_USE_CAD | 1u << VG_USE_VOLUME)
 void vg_problem_note_unused(struct vg_problem *p, int layers_on,
                             unsigned judged);
 

@@ -23,7 +23,8 @@ static const char *const reason[VG_USE_N] = {
   "no layers grow",
   "no farfield was made",
   "the domain was not cut by planes (decompose)",
-  "the domain was cut by planes (decompose)"
+  "the domain was cut by planes (decompose)",
+  "there are no cells to judge"
 };
 
 static unsigned in_use(const struct vg_problem *p, int layers_on)

@@ -385,26 +385,26 @@ VG_ROW(REAL, limit, max_top_ratio, "max_top_ratio", NAN,
   "of the top of the layers, which at most 5 % of the faces of a wall patch "
   "may exceed"))
 VG_ROW(REAL, plain, max_non_orthogonality, "max_non_orthogonality", NAN,
-  .topic = VG_TOPIC_LIMITS,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME,
   LIMIT(0, 180, "degrees", "Largest angle between the normal of a face of the "
   "mesh and the line between the centres of its cells"))
 VG_ROW(REAL, plain, max_skewness, "max_skewness", NAN,
-  .topic = VG_TOPIC_LIMITS,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME,
   LIMIT(0, HUGE_SIZE, "", "Largest skewness of a face of the mesh, as defined "
   "by OpenFOAM"))
 VG_ROW(REAL, plain, min_face_weight, "min_face_weight", NAN,
-  .topic = VG_TOPIC_LIMITS,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME,
   LIMIT(0, 0.5, "", "Smallest weight of the linear interpolation on a face of "
   "the mesh"))
 VG_ROW(REAL, plain, min_orthogonal_quality, "min_orthogonal_quality", NAN,
-  .topic = VG_TOPIC_LIMITS,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME,
   LIMIT(0, 1, "", "Smallest orthogonal quality of a cell of the mesh, as "
   "defined by Fluent"))
 VG_ROW(FLAG, plain, median_dual, "median_dual", 0,
-  .topic = VG_TOPIC_LIMITS, .keeps_mesh = 1,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME, .keeps_mesh = 1,
   .unit = "", .help = "Report the orthogonality of the median dual, for "
   "solvers with unknowns in the points (SU2, FUN3D)")
 VG_ROW(REAL, plain, min_dual_orthogonality, "min_dual_orthogonality", NAN,
-  .topic = VG_TOPIC_LIMITS,
+  .topic = VG_TOPIC_LIMITS, .use = VG_USE_VOLUME,
   LIMIT(-90, 90, "degrees", "Smallest orthogonality of the median dual at a "
   "point, as defined by SU2; 90 is best"))

@@ -174,6 +174,7 @@ enum vg_use {
   VG_USE_FARFIELD,
   VG_USE_PLANES,
   VG_USE_PARTS,
+  VG_USE_VOLUME,
   VG_USE_N
 };
 

@@ -57,7 +57,7 @@ exists n/box.b8.ugrid
 # A file size limit acts like a full disk.
 status=$(ulimit -f 200; "$program" mesh -p f/box --out fo >out 2>err; echo $?)
 exits 1
-says err "File too large"
+says err "a limit of the shell (ulimit -f)"
 [ -z "$(ls -A fo)" ] || fail "left behind: $(ls -A fo)"
 
 # Stopped while it starts, MPI included: the same message.

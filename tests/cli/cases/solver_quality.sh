@@ -88,3 +88,8 @@ says out "Worst orthogonality of faces of the median dual"
 vanguard check -q one/box.b8.ugrid --min-dual-orthogonality 89
 exits 4
 says err "limit not met: mesh: min_dual_orthogonality is 89 degrees, reached "
+
+# A surface has no cells on which the limits could hold.
+vanguard check -q p/box.lb8.ugrid --max-skewness 1
+exits 0
+says out "have no effect because there are no cells to judge: max_skewness"
