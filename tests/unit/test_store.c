@@ -442,11 +442,12 @@ static void one_run_at_a_time(void **state)
     s = opened(1, 0);
     vg_store_keep(s, key_of(1), 3, "abc");
     if (write(ends[1], &c, 1) != 1) _exit(1);
+    alarm(60); /* ends it if an assertion fails */
     pause();
     _exit(0);
   }
   assert_int_equal(read(ends[0], &c, 1), 1);
-  snprintf(process, sizeof process, "process %ld)", (long)pid);
+  snprintf(process, sizeof process, "process %ld, started ", (long)pid);
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "another run is using", "host ", process,
           "wait");
   o = options_of(2, 0);
