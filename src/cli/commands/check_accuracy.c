@@ -34,21 +34,43 @@ static double viscous_length(const struct vg_layer_settings *l)
   return by_flow > 0 ? by_flow : l->first;
 }
 
-vg_status vg_check_accuracy(const struct vg_settings *s,
+/* *s: a copy of `asked` with lengths in the unit of the mesh. */
+static vg_status settle_unit(const struct vg_settings *asked,
+                             struct vg_settings *s, struct vg_error *err)
+{
+  const int unit = vg_settings_unit(asked);
+  const struct vg_param *p;
+  double value;
+  vg_status st = vg_settings_copy(s, asked, err);
+
+  if (st < 0 || !(p = vg_settings_find_unit(s, &value))) return st;
+  if (!unit)
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "%s is a length with a unit, but the unit of the mesh is not "
+      "known: add --unit mm if its coordinates are in "
+      "millimetres, --unit m if they are in metres",
+      p->name);
+  vg_settings_convert(s, unit);
+  return vg_settings_check(s, err);
+}
+
+vg_status vg_check_accuracy(const struct vg_settings *asked,
                             const struct vg_mesh *m,
                             struct vg_accuracy_report *r, struct vg_error *err)
 {
   uint8_t *is_wall = vg_calloc(2 * m->n_patch, 1);
-  const struct vg_accuracy_options o = { .is_wall = is_wall,
-                                         .viscous_length = viscous_length(
-                                           &s->layer),
-                                         .with_reference = 1 };
+  struct vg_accuracy_options o = { .is_wall = is_wall, .with_reference = 1 };
+  struct vg_settings s = VG_SETTINGS_INIT;
   vg_status st;
 
   if (!is_wall) return vg_fail_memory(err, "the walls");
-  VG_TRY(find_walls(s, m, is_wall, is_wall + m->n_patch, err));
+  VG_TRY(settle_unit(asked, &s, err));
+  VG_TRY(find_walls(&s, m, is_wall, is_wall + m->n_patch, err));
+  o.viscous_length = viscous_length(&s.layer);
   st = vg_accuracy_measure(m, &o, r, err);
 done:
+  vg_settings_release(&s);
   free(is_wall);
   return st;
 }

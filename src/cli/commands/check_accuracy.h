@@ -14,7 +14,7 @@
  *
  * @param r  out: released with vg_accuracy_release
  * VG_ERR_INPUT for patches that do not exist; errors of vg_accuracy_measure. */
-vg_status vg_check_accuracy(const struct vg_settings *s,
+vg_status vg_check_accuracy(const struct vg_settings *asked,
                             const struct vg_mesh *m,
                             struct vg_accuracy_report *r, struct vg_error *err);
 

@@ -274,8 +274,13 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
     goto done;
   }
   VG_TRY(vg_problem_read(&p, NULL, &show, err));
-  st = p.read.has_cells ? check_volume(a, &p, &show, err)
-                        : vg_check_surface(&surface, &p, &show, err);
+  if (p.read.has_cells) st = check_volume(a, &p, &show, err);
+  else if (a->with_accuracy)
+    st = vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: --accuracy needs a mesh with cells, and this is a surface",
+      a->one.file);
+  else st = vg_check_surface(&surface, &p, &show, err);
 done:
   vg_display_clear(&show);
   vg_problem_release(&p);

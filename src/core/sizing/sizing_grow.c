@@ -103,29 +103,57 @@ static double fewest_points(const struct level *l, size_t cell)
   return l->side * l->side * l->side / most;
 }
 
+#define RESOLVED 1e-10 /* least size, as a part of the root cube */
+
+static vg_status refuse_tiny(const struct level *l, size_t cell,
+                             struct vg_error *err)
+{
+  const struct vg_octree_build *b = l->b;
+  const double side = b->unit * VG_OCTREE_TOP;
+
+  for (int i = 0; i < 8; i++) {
+    const uint32_t p = b->cell[cell].corner[i];
+    const double h = (double)b->tensor[p].least;
+    double x[3];
+
+    if (h >= RESOLVED * side) continue;
+    vg_octree_place(b, b->point[p].at, x);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the sizes request %.3g near %g %g %g, which coordinates of "
+                   "a domain of %.3g do not resolve; correct the sizes there, "
+                   "or give a smallest size (hmin)",
+                   h, x[0], x[1], x[2], side);
+  }
+  return VG_OK;
+}
+
 /* A request for far more points than any mesh can have would fill the memory
  * with cells of the octree, long before the forecast could refuse it. */
 static vg_status refuse_excess(const struct level *l, struct vg_error *err)
 {
   const struct vg_octree_build *b = l->b;
   double n = 0, densest = 0, x[3];
+  vg_status st = VG_OK;
   size_t where = l->first;
 
   for (size_t i = l->first; i < l->first + l->n; i++) {
     double one = fewest_points(l, i);
 
+    VG_TRY(refuse_tiny(l, i, err));
     n += one;
     if (one > densest) where = i;
     densest = vg_greater(densest, one);
   }
   if (n <= b->most_points) return VG_OK;
   vg_octree_place(b, vg_octree_corner(b, b->cell + where), x);
-  return vg_fail(err, VG_ERR_INPUT,
-                 "the sizes request more than %.2g points, most of them near "
-                 "%g %g %g (size %.3g); correct the sizes there, give a "
-                 "smallest size (hmin), or raise max_cells",
-                 n, x[0], x[1], x[2],
-                 cbrt(l->side * l->side * l->side / densest));
+  st = vg_fail(err, VG_ERR_INPUT,
+               "the sizes request more than %.2g points, most of them near "
+               "%g %g %g (size %.3g); correct the sizes there, give a "
+               "smallest size (hmin), or raise max_cells",
+               n, x[0], x[1], x[2],
+               cbrt(l->side * l->side * l->side / densest));
+done:
+  return st;
 }
 
 /* Decide which cells are split. If the tree would exceed its limit, the floor

@@ -55,6 +55,15 @@ static int is_positive(const double m[6])
   return value[0] > 0 && isfinite(1 / sqrt(value[0])) && isfinite(value[2]);
 }
 
+/* Sizes from 1e-40 to 1e40, whose products are numbers, too. */
+static int is_in_range(const double m[6])
+{
+  double value[3], vector[3][3];
+
+  vg_tensor_eigen(m, value, vector);
+  return value[0] >= 1e-80 && value[2] <= 1e80;
+}
+
 /* Another order in which all metrics are positive, or the given one. */
 static enum vg_tensor_order other_order(size_t n, const double *value,
                                         enum vg_tensor_order order)
@@ -104,7 +113,12 @@ static vg_status check_metric(const char *name, size_t n, size_t i,
              v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]);
     return refuse(name, i, x, m, what, err);
   }
-  if (is_positive(m)) return VG_OK;
+  if (is_positive(m) && is_in_range(m)) return VG_OK;
+  if (is_positive(m))
+    return refuse(name, i, x, m,
+                  "within 1e-80 and 1e80 (sizes from 1e-40 to 1e40); use "
+                  "another unit of length",
+                  err);
   other = components == 6 ? other_order(n, value, order) : order;
   if (other == order)
     return refuse(name, i, x, m,

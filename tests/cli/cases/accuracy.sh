@@ -69,3 +69,16 @@ python3 "$here/json_schema.py" "$schemas/check.schema.json" \
   hex.json >out
 status=$?
 [ $status = 77 ] || exits 0
+
+# A length with a unit is converted, or needs the unit of the mesh.
+vanguard check -q hex/box.b8.ugrid --walls 5 --accuracy --first 1mm --unit m
+exits 0
+says out "y+ is 1 at 0.001"
+vanguard check -q hex/box.b8.ugrid --walls 5 --accuracy --first 1mm
+exits 1
+says err "first is a length with a unit, but the unit of the mesh is not known"
+
+# A surface has no cells.
+vanguard check -q p/box.lb8.ugrid --accuracy
+exits 1
+says err "needs a mesh with cells"
