@@ -141,10 +141,10 @@ layers_mesh() {
 metric_mesh() {
   "$vanguard" demo sphere --cells 20000 --out metric > /dev/null
   "$vanguard" mesh -q -p metric/sphere --write mesh --out sizes > /dev/null
-  # Sizes that decrease along x: tensors of an anisotropic metric.
+  # Sizes that grow away from the plane x = 0, smaller along x: size tensors.
   awk '/^Vertices/ { getline n; print "MeshVersionFormatted 2\nDimension 3\n" \
          "SolAtVertices\n" n "\n1 3"
-         while (n-- > 0) { getline; h = 0.05 + 0.02 * ($1 + 3)
+         while (n-- > 0) { getline; h = 0.2 + 0.04 * ($1 < 0 ? -$1 : $1)
            a = 1 / (h * h); print a, 0, a / 4, 0, 0, a / 4 } print "End" }' \
     sizes/sphere.mesh > sizes/sphere.sol
   mesh="mesh -q -p metric/sphere -t 1 --leaf-cells 10000 --max-cells 4000000
