@@ -46,7 +46,8 @@ const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4,
              rim_near = 1e-3;
 const int copy_grid = 7, copy_rim = 5;
 /* A curve in the parameter plane that is farther than this from its edge,
- * relative to the diagonal of the face, is wrong. */
+ * relative to the diagonal of the face, and than the tolerance of the edge, is
+ * wrong. */
 const double curve_far = 1e-2; /* S13 */
 
 struct Measure {
@@ -109,10 +110,13 @@ bool has_wrong_curves(const TopoDS_Face &face)
 
   BRepBndLib::Add(face, box, Standard_False);
   if (box.IsVoid() || box.IsOpen()) return false;
-  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next())
-    if (curve_error(TopoDS::Edge(e.Current()), face) >
-        curve_far * std::sqrt(box.SquareExtent()))
+  const double most = curve_far * std::sqrt(box.SquareExtent());
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+    const TopoDS_Edge &edge = TopoDS::Edge(e.Current());
+
+    if (curve_error(edge, face) > std::max(most, BRep_Tool::Tolerance(edge)))
       return true;
+  }
   return false;
 }
 
