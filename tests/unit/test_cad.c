@@ -261,8 +261,12 @@ static void solids_that_touch_are_united(void **state)
     double volume;
     const char *note;
   } cases[] = {
-    { FILE_OF("stacked.brep"), 10, 8, "face 6 and face 11 at" },
-    { FILE_OF("glued.brep"), 10, 8, "face 6 at (0.5, 1, 3) is a wall" },
+    { FILE_OF("stacked.brep"), 10, 8, "2 solids touch or overlap" },
+    { FILE_OF("glued.brep"), 10, 8, "2 solids touch or overlap" },
+    /* a peg whose end is a wall as a whole, and its side in part; its end is a
+     * face of each solid, or the same face of both */
+    { FILE_OF("peg.brep"), 8, 8 + M_PI / 4, "2 solids touch or overlap" },
+    { FILE_OF("peg_glued.brep"), 8, 8 + M_PI / 4, "2 solids touch or overlap" },
     { FILE_OF("leaning.brep"), 11, 8, "2 solids touch or overlap" },
     { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" },
     /* cylinders with radii of 1 and 0.997 */
@@ -341,6 +345,54 @@ static void a_solid_that_contains_another_stays(void **state)
     assert_int_equal(m.n_patch, cases[i].patches);
     vg_mesh_release(&m);
   }
+}
+
+/* The curve of the apex of this cone in the parameter plane is 25.4 times as
+ * far away. */
+static void wrong_curves_of_a_cone_are_computed(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+  struct vg_cad *c = parse_file(FILE_OF("cone.brep"), VG_CAD_BREP, &o, &s);
+  struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  says(&n, "face 1 has wrong parameter-space curves along its boundary, at "
+           "(-0.5, ");
+  assert_int_equal(s.is_solid, 1);
+  near(s.volume, M_PI, 1e-6);
+  near(s.area[0], M_PI * sqrt(10), 1e-3);
+  is_sound(&s.mesh, 1);
+  assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
+  assert_int_equal(r.n_defect, 0);
+  near(fabs(r.shell[0].volume), M_PI, 0.02);
+  vg_surface_report_release(&r);
+  vg_cad_surface_release(&s);
+  vg_cad_close(c);
+}
+
+/* The inner rim of this plane face turns the wrong way. */
+static void a_face_covered_in_part_is_an_error(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_input in = VG_INPUT_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_cad *c;
+
+  (void)state;
+  assert_int_equal(vg_input_open(FILE_OF("ring.brep"), &in, &err), VG_OK);
+  assert_int_equal(vg_cad_open(&c, &err), VG_OK);
+  assert_int_equal(vg_cad_parse(c, &in, VG_CAD_BREP, &o, &s, &err),
+                   VG_ERR_GEOMETRY);
+  assert_non_null(strstr(err.text, "the triangles of face 1 at (0, 0, 0) have "
+                                   "an area of 9, but the face itself 25"));
+  vg_cad_close(c);
+  vg_input_release(&in);
 }
 
 static void a_rocket_of_ten_solids_is_one_shell(void **state)
@@ -976,6 +1028,8 @@ int main(void)
     cmocka_unit_test(missing_curves_of_parameters_are_made),
     cmocka_unit_test(a_duplicate_face_is_removed),
     cmocka_unit_test(solids_that_touch_are_united),
+    cmocka_unit_test(wrong_curves_of_a_cone_are_computed),
+    cmocka_unit_test(a_face_covered_in_part_is_an_error),
     cmocka_unit_test(pieces_of_a_face_have_its_number),
     cmocka_unit_test(a_solid_that_contains_another_stays),
     cmocka_unit_test(a_rocket_of_ten_solids_is_one_shell),

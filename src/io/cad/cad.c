@@ -530,11 +530,43 @@ done:
   return st;
 }
 
-/* Without the union, the surface is another one, so that only a crash of the
- * library selects it. */
-static int crashed_uniting(const struct call *k)
+/* The next simpler treatment of solids after a crash of the library in a union;
+ * 0: the child ended otherwise. The surface is another one, so that only a
+ * crash selects it. */
+static int simpler_union(const struct call *k)
 {
-  return k->is_crash && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE);
+  if (!k->is_crash) return 0;
+  if (!strcmp(k->cad->stage, VG_CAD_STAGE_UNITE_WHOLE))
+    return VG_CAD_UNITE_WALLS;
+  return strcmp(k->cad->stage, VG_CAD_STAGE_UNITE) ? 0 : VG_CAD_LEAVE_APART;
+}
+
+/* Read the file; after a crash in a union again with a simpler one. */
+static vg_status read_solids(struct call *k, const struct vg_input *view,
+                             enum vg_cad_kind kind, int with_volume,
+                             struct vg_cad_surface *out, struct vg_error *err)
+{
+  int apart = k->o->keeps_solids ? VG_CAD_KEEP_WALLS : VG_CAD_UNITE_WHOLE;
+  vg_status st;
+
+  do {
+    k->is_crash = 0;
+    VG_TRY(start_child(k->cad, err));
+    send_file(k, view, kind, apart, with_volume);
+    st = await_surface(k, out, err);
+    apart = st < 0 ? simpler_union(k) : 0;
+    if (apart && k->o->note)
+      k->o->note(k->o->user,
+                 apart == VG_CAD_UNITE_WALLS
+                   ? "Open CASCADE crashed while it united solids that touch "
+                     "or overlap; the file was read again and their common "
+                     "walls were dropped before the union"
+                   : "Open CASCADE crashed while it united solids that touch "
+                     "or overlap; the file was read again without uniting "
+                     "them");
+  } while (apart);
+done:
+  return st;
 }
 
 static vg_status parse(struct vg_cad *c, struct vg_input *in,
@@ -551,22 +583,11 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
                    in->path, (int)kind);
   VG_TRY(check_frame(in, kind, err));
   if (kind == VG_CAD_STEP) drop_text_after_end(&view, &k);
-  VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
   c->limit = o->seconds > 0 ? o->seconds
                             : SECONDS + SECONDS_PER_BYTE * (double)in->size;
-  send_file(&k, &view, kind, o->keeps_solids ? 2 : 0, with_volume);
-  st = await_surface(&k, out, err);
-  if (st < 0 && crashed_uniting(&k)) {
-    if (o->note)
-      o->note(o->user,
-              "Open CASCADE crashed while it united solids that touch or "
-              "overlap; the file was read again without uniting them");
-    VG_TRY(start_child(c, err));
-    send_file(&k, &view, kind, 1, with_volume);
-    st = await_surface(&k, out, err);
-  }
+  st = read_solids(&k, &view, kind, with_volume, out, err);
   c->has_model = st >= 0;
 done:
   return st;

@@ -25,14 +25,25 @@ struct vg_cad_ask {
   int32_t unit, patches;
   uint64_t n;
   double tolerance, chord, angle, least;
-  int32_t leave_apart; /* 1: do not unite solids; 2: and keep the walls that
-                          they share */
+  int32_t leave_apart; /* how solids that touch are treated, see below */
   int32_t with_volume; /* 1: determine is_solid, volume and areas */
   int32_t solids;      /* enum vg_cad_solids */
   int32_t reserved;    /* 0 */
 };
 
-/* Name of the stage that unites solids. */
+/* Treatment of solids that touch or overlap. WHOLE: unite the complete solids;
+ * where that fails, drop the walls that they share as a whole first, as WALLS
+ * does. APART: only drop these walls. KEEP_WALLS: change nothing. */
+enum {
+  VG_CAD_UNITE_WHOLE,
+  VG_CAD_UNITE_WALLS,
+  VG_CAD_LEAVE_APART,
+  VG_CAD_KEEP_WALLS
+};
+
+/* Names of the stages that unite complete solids, and solids without some
+ * walls. */
+#define VG_CAD_STAGE_UNITE_WHOLE "uniting its complete solids"
 #define VG_CAD_STAGE_UNITE "uniting its solids"
 
 /* Answers: any number of notes and stages (n characters), followed by a failure

@@ -9,6 +9,7 @@
 #include <set>
 
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
@@ -17,14 +18,18 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <Geom2d_Curve.hxx>
 #include <Geom_Surface.hxx>
 #include <Precision.hxx>
 #include <ShapeAnalysis_Surface.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Wire.hxx>
 
 namespace vg_occt
 {
@@ -40,6 +45,10 @@ const double width_least = 1e-9; /* S13 */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4,
              rim_near = 1e-3;
 const int copy_grid = 7, copy_rim = 5;
+/* A curve in the parameter plane that is farther than this from its edge,
+ * relative to the diagonal of the face, and than the tolerance of the edge, is
+ * wrong. */
+const double curve_far = 1e-2; /* S13 */
 
 struct Measure {
   size_t at; /* index of the face */
@@ -67,6 +76,74 @@ bool lacks_curves(const TopoDS_Face &face)
           .IsNull())
       return true;
   return false;
+}
+
+/* Largest distance, at some points of an edge, between its curve in the
+ * parameter plane and the edge itself. */
+double curve_error(const TopoDS_Edge &edge, const TopoDS_Face &face)
+{
+  const bool is_point = BRep_Tool::Degenerated(edge);
+  const BRepAdaptor_Surface on(face, Standard_False);
+  double first, last, worst = 0;
+  Handle(Geom2d_Curve) uv = BRep_Tool::CurveOnSurface(edge, face, first, last);
+
+  if (uv.IsNull()) return 0;
+  if (is_point
+        ? TopExp::FirstVertex(edge).IsNull()
+        : !(BRep_Tool::SameParameter(edge) && BRep_Tool::SameRange(edge)))
+    return 0;
+  for (int i = 0; i < copy_rim; i++) {
+    const double t = first + (last - first) * i / (copy_rim - 1);
+    const gp_Pnt2d at = uv->Value(t);
+    const gp_Pnt p = is_point ? BRep_Tool::Pnt(TopExp::FirstVertex(edge))
+                              : BRepAdaptor_Curve(edge).Value(t);
+
+    worst = std::max(worst, p.Distance(on.Value(at.X(), at.Y())));
+  }
+  return worst;
+}
+
+/* Does the curve of an edge in the parameter plane belong to another place? */
+bool has_wrong_curves(const TopoDS_Face &face)
+{
+  Bnd_Box box;
+
+  BRepBndLib::Add(face, box, Standard_False);
+  if (box.IsVoid() || box.IsOpen()) return false;
+  const double most = curve_far * std::sqrt(box.SquareExtent());
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
+    const TopoDS_Edge &edge = TopoDS::Edge(e.Current());
+
+    if (curve_error(edge, face) > std::max(most, BRep_Tool::Tolerance(edge)))
+      return true;
+  }
+  return false;
+}
+
+/* The face without any curve in its parameter plane. Its edges are the same,
+ * except for those at poles, which are only such curves. */
+TopoDS_Face without_curves(const TopoDS_Face &face)
+{
+  BRep_Builder builder;
+  TopLoc_Location at;
+  Handle(Geom_Surface) surface = BRep_Tool::Surface(face, at);
+  TopoDS_Face out;
+
+  surface = Handle(Geom_Surface)::DownCast(surface->Copy());
+  builder.MakeFace(out, surface, at, BRep_Tool::Tolerance(face));
+  for (TopoDS_Iterator w(face.Oriented(TopAbs_FORWARD)); w.More(); w.Next()) {
+    TopoDS_Wire wire;
+
+    if (w.Value().ShapeType() != TopAbs_WIRE) continue;
+    builder.MakeWire(wire);
+    for (TopoDS_Iterator e(w.Value().Oriented(TopAbs_FORWARD)); e.More();
+         e.Next())
+      if (!BRep_Tool::Degenerated(TopoDS::Edge(e.Value())))
+        builder.Add(wire, e.Value());
+    builder.Add(out, wire.Oriented(w.Value().Orientation()));
+  }
+  out.Orientation(face.Orientation());
+  return out;
 }
 
 /* --- faces to drop ------------------------------------------------------- */
@@ -581,16 +658,24 @@ void complete(Model &model, const Talk &talk)
 {
   std::vector<double> sizes;
   Bnd_Box box;
-  size_t n = 0;
+  const Face *first = nullptr;
+  bool first_lacks = false;
 
-  for (const Face &f : model.faces) {
-    if (!lacks_curves(f.shape)) continue;
-    if (!n++)
-      talk.note(format("%s has no parameter-space curves along its boundary; "
-                       "they were computed, also for other faces like it",
-                       named(f).c_str()));
+  for (Face &f : model.faces) {
+    const bool lacks = lacks_curves(f.shape);
+
+    if (!lacks && !has_wrong_curves(f.shape)) continue;
+    if (!first) first_lacks = lacks;
+    if (!first) first = &f;
+    if (!lacks) f.shape = without_curves(f.shape);
   }
-  if (n) mend(model, talk);
+  if (first) {
+    mend(model, talk);
+    talk.note(format("%s has %s parameter-space curves along its boundary, "
+                     "at %s; they were computed, also for other faces like it",
+                     named(*first).c_str(), first_lacks ? "no" : "wrong",
+                     place(point_of(first->shape)).c_str()));
+  }
   for (const Face &f : model.faces) {
     Bnd_Box one;
 
@@ -609,15 +694,26 @@ void complete(Model &model, const Talk &talk)
 
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {
+  const bool many = model.n_solid > 1;
   std::vector<Measure> list = drop_slits(model, talk);
-  double tolerance;
+  std::vector<std::string> said;
+  double tolerance = 0;
+  bool done = false;
 
+  /* A solid that shares more than one wall in part is not closed without one of
+   * its walls, so that the union needs all of them. */
+  if (many && ask.leave_apart == VG_CAD_UNITE_WHOLE)
+    done = unite(ask, false, model, said, talk);
   talk.stage("looking for duplicate faces");
-  if (model.n_solid < 2 || ask.leave_apart < 2)
-    drop_copies(model, list, model.n_solid < 2, talk);
-  tolerance = sew(ask, model, talk);
-  if (model.n_solid > 1 && ask.leave_apart < 2) {
-    unite(ask, model, talk);
+  if (!done) {
+    if (!said.empty()) list = drop_slits(model, talk);
+    if (!many || ask.leave_apart < VG_CAD_KEEP_WALLS)
+      drop_copies(model, list, !many, talk);
+    tolerance = sew(ask, model, talk);
+    if (many && ask.leave_apart < VG_CAD_LEAVE_APART)
+      unite(ask, true, model, said, talk);
+  }
+  if (many && ask.leave_apart < VG_CAD_KEEP_WALLS) {
     list = drop_slits(model, talk);
     drop_copies(model, list, true, talk);
     tolerance = sew(ask, model, talk);

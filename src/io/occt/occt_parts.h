@@ -30,6 +30,11 @@ struct Failure {
   std::string text;
 };
 
+/** Triangles do not cover a face. */
+struct Uncovered : Failure {
+  std::string face;
+};
+
 std::string format(const char *text, ...) __attribute__((format(printf, 1, 2)));
 
 /** "(x, y, z)". */
@@ -79,8 +84,9 @@ struct Model {
                       the first of them, and the others have no faces */
   std::vector<TopoDS_Edge> curves; /* [number - 1], set by triangulation */
   double diagonal = 0;             /* diagonal of the bounding box */
-  double face_size = 0;  /* median diagonal of the faces' bounding boxes */
-  bool is_solid = false; /* see struct vg_cad_surface */
+  double face_size = 0;   /* median diagonal of the faces' bounding boxes */
+  bool is_united = false; /* are faces those of a union of solids? */
+  bool is_solid = false;  /* see struct vg_cad_surface */
   double volume = 0;
   int unit = 0; /* enum vg_cad_unit; 0: not known */
 };
@@ -121,8 +127,12 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
 const double hollow_share = 0.5, box_near = 1e-3; /* S54 */
 
 /** Replace the faces of solids that touch or overlap by the outer faces of
- * their union. Solids that contain others are not changed. */
-void unite(const vg_cad_ask &ask, Model &model, const Talk &talk);
+ * their union. Solids that contain others are not changed.
+ * @param is_last  note the solids that could not be united
+ * @param said     notes of unions, which are not repeated; appended to
+ * @returns false if a solid is not closed, or some could not be united */
+bool unite(const vg_cad_ask &ask, bool is_last, Model &model,
+           std::vector<std::string> &said, const Talk &talk);
 
 /** Tolerances to be tried in this order: ask.tolerance, or fractions of the
  * diagonal. */
@@ -162,7 +172,7 @@ struct Surface {
                        edge, relative to the length of the edge */
 };
 
-/** Triangulate the model; faces that fail are noted. */
+/** Triangulate the model; faces that fail are noted. Throws Uncovered. */
 void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                  const Talk &talk);
 

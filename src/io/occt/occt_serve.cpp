@@ -150,8 +150,22 @@ void answer_read(const vg_cad_ask &ask, Held &held, const Talk &talk)
   read(ask, file.path(), held.healed, talk);
   talk.stage("checking its faces for errors");
   complete(held.healed, talk);
+  const Model whole = held.healed;
   heal(ask, held.healed, talk);
-  answer_again(ask, held, talk);
+  try {
+    answer_again(ask, held, talk);
+  } catch (const Uncovered &f) {
+    vg_cad_ask apart = ask;
+
+    if (!held.healed.is_united) throw;
+    talk.note(format("Open CASCADE covered only a part of %s of the union of "
+                     "the solids: the union was not used",
+                     f.face.c_str()));
+    apart.leave_apart = VG_CAD_LEAVE_APART;
+    held.healed = whole;
+    heal(apart, held.healed, talk);
+    answer_again(apart, held, talk);
+  }
 }
 
 struct Points {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 
 #include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -230,6 +231,8 @@ const double area_near = 1e-4;
  * to this fraction of the area of all faces. The mesher of Open CASCADE, which
  * reports no error then, may cover a part of a face only. */
 const double face_near = 0.25, all_near = 1e-5; /* S89 */
+/* A part of the area of all faces that may be missing. */
+const double all_most = 1e-3; /* S89 */
 
 /* Key and name of the patch of a face. */
 std::string group_of(const vg_cad_ask &ask, const Face &f)
@@ -355,11 +358,10 @@ double area_of(const TopoDS_Face &face)
   return std::fabs(g.Mass());
 }
 
-/* Note the first face that its triangles do not cover. */
-void check_areas(const Model &model, const Surface &s, const Talk &talk)
+/* Area of the triangles of each face. */
+std::vector<double> areas_of(const Model &model, const Surface &s)
 {
   std::vector<double> has(model.faces.size(), 0);
-  double all = 0;
 
   for (size_t t = 0; t < s.face.size(); t++) {
     gp_Pnt p[3];
@@ -368,23 +370,42 @@ void check_areas(const Model &model, const Surface &s, const Talk &talk)
       const double *x = s.point.data() + 3 * s.tri[3 * t + i];
       p[i].SetCoord(x[0], x[1], x[2]);
     }
-    const double a = gp_Vec(p[0], p[1]).Crossed(gp_Vec(p[0], p[2])).Magnitude();
-    has[s.piece[t]] += a / 2;
-    all += a / 2;
+    has[s.piece[t]] +=
+      gp_Vec(p[0], p[1]).Crossed(gp_Vec(p[0], p[2])).Magnitude() / 2;
   }
+  return has;
+}
+
+/* Find the first face that its triangles do not cover: an error if the surface
+ * is then another one, else a note. */
+void check_areas(const Model &model, const Surface &s, const Talk &talk)
+{
+  const std::vector<double> has = areas_of(model, s);
+  const double all = std::accumulate(has.begin(), has.end(), 0.);
+  bool said = false;
+
   for (size_t i = 0; i < has.size(); i++) {
     const Face &f = model.faces[i];
 
     if (f.shape.IsNull() || !(has[i] > 0)) continue;
     const double area = area_of(f.shape), off = std::fabs(has[i] - area);
     if (off <= face_near * area || off <= all_near * all) continue;
-    talk.note(
-      format("the triangles of %s at %s have an area of %.4g, but the "
-             "face itself %.4g: Open CASCADE covered it in part, or its "
-             "rim crosses itself. If the surface lacks a part there, "
-             "export the file in another format (STEP, BREP)",
-             named(f).c_str(), place(point_of(f.shape)).c_str(), has[i], area));
-    return;
+    const std::string face = named(f) + " at " + place(point_of(f.shape));
+    const std::string text = format(
+      "the triangles of %s have an area of %.4g, but the face itself %.4g: "
+      "Open CASCADE covered it in part, or its rim crosses itself",
+      face.c_str(), has[i], area);
+    if (off > all_most * all)
+      throw Uncovered{
+        { VG_ERR_GEOMETRY,
+          text + "; divide this face in the CAD program, or export the file in "
+                 "another format (STEP, BREP) or unit (millimetres)" },
+        face
+      };
+    if (!said)
+      talk.note(text + ". If the surface lacks a part there, export the file "
+                       "in another format (STEP, BREP)");
+    said = true;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <BOPAlgo_Builder.hxx>
 #include <BRepBndLib.hxx>
@@ -62,39 +63,57 @@ bool is_closed(const std::vector<TopoDS_Shape> &faces)
          std::all_of(n.begin(), n.end(), [](size_t k) { return k % 2 == 0; });
 }
 
-/* The solids bounded by the faces of the model. */
-Solids build_solids(const Model &model)
+/* Collects the shells and faces of each solid. */
+class Shells
 {
-  const std::vector<size_t> of = find_shells(model);
-  std::vector<TopoDS_Shell> shell(of.size());
-  std::vector<std::vector<TopoDS_Shape>> faces(
-    static_cast<size_t>(model.n_solid));
-  Solids out(faces.size());
-  BRep_Builder builder;
+public:
+  explicit Shells(const Model &model)
+      : faces_(static_cast<size_t>(model.n_solid))
+  {
+    const std::vector<size_t> of = find_shells(model);
 
-  for (size_t i = 0; i < of.size(); i++) {
-    const Face &f = model.faces[i];
+    for (size_t i = 0; i < of.size(); i++) {
+      const Face &f = model.faces[i];
 
-    if (f.shape.IsNull() || f.solid < 0) continue;
-    faces[static_cast<size_t>(f.solid)].push_back(f.shape);
-    if (shell[of[i]].IsNull()) builder.MakeShell(shell[of[i]]);
-    builder.Add(shell[of[i]], f.shape);
-  }
-  for (size_t i = 0; i < of.size(); i++) {
-    if (shell[i].IsNull()) continue;
-    const size_t k = static_cast<size_t>(model.faces[i].solid);
-    TopoDS_Solid solid;
-
-    if (!is_closed(faces[k])) continue;
-    if (out[k].IsNull()) {
-      builder.MakeSolid(solid);
-      out[k] = solid;
+      if (f.shape.IsNull()) continue;
+      if (f.solid >= 0) add(f.solid, of[i], f.shape);
+      if (f.behind >= 0) add(f.behind, of[i], f.shape.Reversed());
     }
-    shell[i].Closed(Standard_True);
-    builder.Add(out[k], shell[i]);
   }
-  return out;
-}
+
+  Solids solids() const
+  {
+    Solids out(faces_.size());
+
+    for (const auto &one : shell_) {
+      const size_t k = static_cast<size_t>(one.first.first);
+      TopoDS_Shell shell = one.second;
+      TopoDS_Solid solid;
+
+      if (!is_closed(faces_[k])) continue;
+      if (out[k].IsNull()) {
+        BRep_Builder().MakeSolid(solid);
+        out[k] = solid;
+      }
+      shell.Closed(Standard_True);
+      BRep_Builder().Add(out[k], shell);
+    }
+    return out;
+  }
+
+private:
+  void add(int solid, size_t connected, const TopoDS_Shape &face)
+  {
+    TopoDS_Shell &shell = shell_[{ solid, connected }];
+
+    faces_[static_cast<size_t>(solid)].push_back(face);
+    if (shell.IsNull()) BRep_Builder().MakeShell(shell);
+    BRep_Builder().Add(shell, face);
+  }
+
+  std::vector<std::vector<TopoDS_Shape>> faces_; /* of each solid */
+  std::map<std::pair<int, size_t>, TopoDS_Shell> shell_;
+};
 
 /* Groups of solids whose bounding boxes touch directly or through others. */
 std::vector<Group> touching(const Solids &solids, double tolerance)
@@ -336,29 +355,36 @@ std::string where(const Model &model, size_t solid)
   return "somewhere";
 }
 
-/* Replace the faces of the group by those of its union; returns false if the
- * union is not closed. */
+/* Replace the faces of the group by those of its union, which is then one
+ * solid; returns false if the union is not closed. A face between the group and
+ * another solid stays with the latter. */
 bool replace_faces(Cells &cells, const Group &group, Model &model)
 {
   std::vector<Face> out;
 
   for (const Face &f : model.faces) {
-    if (f.shape.IsNull() || !has(group, f.solid)) {
+    const bool mine = has(group, f.solid), behind = has(group, f.behind);
+
+    if (f.shape.IsNull() || !(mine || behind)) {
       out.push_back(f);
       continue;
     }
     std::vector<TopoDS_Face> pieces = cells.take(f.shape);
     Face next = f;
 
-    next.shape.Nullify();
-    if (pieces.empty()) out.push_back(next);
+    if (behind) next.behind = -1;
+    if (mine) next.solid = static_cast<int>(group[0]);
+    if (mine) next.shape.Nullify();
+    if (pieces.empty() || !mine) out.push_back(next);
     for (const TopoDS_Face &piece : pieces) {
+      if (!mine) break;
       next.shape = piece;
       out.push_back(next);
     }
   }
   if (!cells.is_whole()) return false;
   model.faces = out;
+  model.is_united = true;
   return true;
 }
 
@@ -398,9 +424,11 @@ void unite_group(const Solids &solids, Group group, double tolerance,
   }
 }
 
-/* Reason of a failure; empty on success. */
+/* Reason of a failure; empty on success. Texts that were said are not
+ * repeated. */
 std::string try_to_unite(const Solids &solids, const Group &group,
-                         double tolerance, Model &model, const Talk &talk)
+                         double tolerance, Model &model,
+                         std::vector<std::string> &said, const Talk &talk)
 {
   std::vector<std::string> say;
 
@@ -411,39 +439,61 @@ std::string try_to_unite(const Solids &solids, const Group &group,
   } catch (const Standard_Failure &f) {
     return f.DynamicType()->Name();
   }
-  for (const std::string &text : say) talk.note(text);
+  for (const std::string &text : say) {
+    if (std::find(said.begin(), said.end(), text) != said.end()) continue;
+    talk.note(text);
+    said.push_back(text);
+  }
   return "";
 }
 
 size_t count_faces_of(const Model &model, const Group &group)
 {
   return static_cast<size_t>(
-    std::count_if(model.faces.begin(), model.faces.end(),
-                  [&](const Face &f) { return has(group, f.solid); }));
+    std::count_if(model.faces.begin(), model.faces.end(), [&](const Face &f) {
+      return has(group, f.solid) || has(group, f.behind);
+    }));
+}
+
+/* Do all solids that have faces have a shape? */
+bool are_complete(const Model &model, const Solids &solids)
+{
+  auto lacks = [&](int k) {
+    return k >= 0 && solids[static_cast<size_t>(k)].IsNull();
+  };
+
+  return std::none_of(model.faces.begin(), model.faces.end(),
+                      [&](const Face &f) {
+                        return !f.shape.IsNull() &&
+                               (lacks(f.solid) || lacks(f.behind));
+                      });
 }
 
 } // namespace
 
-void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
+bool unite(const vg_cad_ask &ask, bool is_last, Model &model,
+           std::vector<std::string> &said, const Talk &talk)
 {
-  if (ask.leave_apart) return;
-  const Solids solids = build_solids(model);
+  const Solids solids = Shells(model).solids();
   const std::vector<double> list = tolerances(ask, model);
+  bool done = are_complete(model, solids);
 
+  talk.stage(is_last ? VG_CAD_STAGE_UNITE : VG_CAD_STAGE_UNITE_WHOLE);
   for (const Group &group : touching(solids, list[0])) {
     std::string why = "it has too many faces";
 
-    talk.stage(VG_CAD_STAGE_UNITE);
     if (count_faces_of(model, group) <= most_faces)
       for (size_t i = 0; i < list.size() && !why.empty(); i++)
-        why = try_to_unite(solids, group, list[i], model, talk);
-    if (!why.empty())
+        why = try_to_unite(solids, group, list[i], model, said, talk);
+    done = done && why.empty();
+    if (!why.empty() && is_last)
       talk.note(format("%zu solids touch or overlap, but could not be united "
                        "(%s); only walls that they share as a whole are "
                        "dropped; the first solid is %s",
                        group.size(), why.c_str(),
                        where(model, group[0]).c_str()));
   }
+  return done;
 }
 
 } // namespace vg_occt
