@@ -331,10 +331,13 @@ vg_status vg_format_use_mapbc(const char *path, struct vg_mesh *m,
                         : companion(path, ".mapbc", ".mapbc.gz");
   struct vg_mapbc b = VG_MAPBC_INIT;
   vg_status st = VG_OK;
+  int is_own = 0;
 
   if (!name) return vg_fail_memory(err, "a file name");
   if (!*name) goto done;
-  if (!is_named && !info->n_cell && vg_mapbc_is_output(name)) {
+  if (!is_named && !info->n_cell)
+    VG_TRY(vg_mapbc_is_output(name, &is_own, err));
+  if (is_own) {
     info->has_own_mapbc = 1;
     goto done;
   }

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/memory.h"
 #include "io/stream/convention.h"
@@ -338,20 +339,23 @@ vg_status vg_mapbc_read(const char *path, struct vg_mapbc *out,
 /* End of the title of a file that is written next to a mesh. */
 static const char output_mark[] = " [written by vanguard mesh]";
 
-int vg_mapbc_is_output(const char *path)
+vg_status vg_mapbc_is_output(const char *path, int *is, struct vg_error *err)
 {
   const size_t n = sizeof output_mark - 1;
   struct vg_input in = VG_INPUT_INIT;
   const char *text;
   size_t len;
-  int is;
+  vg_status st;
 
-  if (vg_input_open_head(path, 4096, &in, NULL) < 0) return 0;
-  is = vg_input_line(&in, &text, &len);
-  while (is && len && isspace((unsigned char)text[len - 1])) len--;
-  is = is && len >= n && !memcmp(text + len - n, output_mark, n);
+  *is = 0;
+  if (access(path, F_OK)) return VG_OK;
+  st = vg_input_open_head(path, 4096, &in, err);
+  if (st < 0) return st;
+  *is = vg_input_line(&in, &text, &len);
+  while (*is && len && isspace((unsigned char)text[len - 1])) len--;
+  *is = *is && len >= n && !memcmp(text + len - n, output_mark, n);
   vg_input_release(&in);
-  return is;
+  return VG_OK;
 }
 
 /* --- applying --- */

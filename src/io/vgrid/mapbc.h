@@ -39,10 +39,10 @@ vg_status vg_mapbc_read(const char *path, struct vg_mapbc *out,
 vg_status vg_mapbc_parse(struct vg_input *in, struct vg_mapbc *out,
                          struct vg_error *err);
 
-/** Returns 1 if Vanguard has written the file next to a mesh
+/** *is: 1 if Vanguard has written the file next to a mesh
  * (vg_mapbc_write_output). Such a file is not an input of a surface. 0 also if
- * the file cannot be read. */
-int vg_mapbc_is_output(const char *path);
+ * there is no file. VG_ERR_IO, VG_ERR_MEMORY: the file cannot be read. */
+vg_status vg_mapbc_is_output(const char *path, int *is, struct vg_error *err);
 
 void vg_mapbc_release(struct vg_mapbc *b);
 

@@ -509,6 +509,18 @@ static vg_status apply_patch_table(struct vg_read *r, struct vg_error *err)
                                 r->settings.close_holes, &r->surface, err);
 }
 
+/* A .mapbc that is an output is not an input, unless it is named. */
+static vg_status leave_output(struct vg_read *r, struct vg_error *err)
+{
+  int is = 0;
+  vg_status st = *r->settings.mapbc
+                 ? VG_OK
+                 : vg_mapbc_is_output(r->files.mapbc, &is, err);
+
+  if (is) leave_own_mapbc(r);
+  return st;
+}
+
 static vg_status apply_conditions(struct vg_read *r, struct vg_error *err)
 {
   struct vg_mapbc bc = VG_MAPBC_INIT;
@@ -516,8 +528,7 @@ static vg_status apply_conditions(struct vg_read *r, struct vg_error *err)
   vg_status st;
 
   VG_TRY(name_mapbc(r, err));
-  if (!*r->settings.mapbc && vg_mapbc_is_output(r->files.mapbc))
-    leave_own_mapbc(r);
+  VG_TRY(leave_output(r, err));
   if (!*r->files.mapbc) return VG_OK;
   st = vg_mapbc_read(r->files.mapbc, &bc, err);
   if (st >= 0) st = vg_mapbc_apply(&bc, &r->surface, &match, err);
@@ -543,8 +554,7 @@ static vg_status read_for_all(struct vg_read *r, struct vg_comm *comm,
     st = read_surface_file(r, show, err);
   } else {
     st = name_mapbc(r, err);
-    if (st >= 0 && !*r->settings.mapbc && vg_mapbc_is_output(r->files.mapbc))
-      leave_own_mapbc(r);
+    if (st >= 0) st = leave_output(r, err);
   }
   st = vg_surface_bcast(comm, 1, st, &r->surface, err);
 done:

@@ -241,7 +241,8 @@ static int needs_conditions(const char *item)
  * an output of Vanguard exists in its place. */
 static vg_status add_conditions(struct vg_outputs *o, struct vg_error *err)
 {
-  int lacks = 0, has = 0;
+  int lacks = 0, has = 0, is_own = 1;
+  vg_status st = VG_OK;
   char *path;
 
   for (size_t i = 0; i < o->n_item; i++) {
@@ -251,10 +252,10 @@ static vg_status add_conditions(struct vg_outputs *o, struct vg_error *err)
   if (!lacks || has || o->n_item == VG_WRITE_ITEMS) return VG_OK;
   path = vg_outputs_final(o, "mapbc");
   if (!path) return vg_fail_memory(err, "the output paths");
-  if (access(path, F_OK) || vg_mapbc_is_output(path))
-    strcpy(o->item[o->n_item++], "mapbc");
+  if (!access(path, F_OK)) st = vg_mapbc_is_output(path, &is_own, err);
+  if (st >= 0 && is_own) strcpy(o->item[o->n_item++], "mapbc");
   free(path);
-  return VG_OK;
+  return st;
 }
 
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
