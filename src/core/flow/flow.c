@@ -122,10 +122,12 @@ static int has_rims(const struct vg_surface_report *r)
          !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
 }
 
-/* Move the rim of a half model into its plane. */
+/* Move the rim of a half model into its plane. If it was off the plane, repeat
+ * the surface check. */
 static vg_status flatten_root(struct settle *s, struct vg_error *err)
 {
   double lo[3], hi[3], length = 0, off;
+  uint8_t *none = NULL;
   vg_status st;
 
   vg_mesh_bounds(s->m, lo, hi);
@@ -137,7 +139,11 @@ static vg_status flatten_root(struct settle *s, struct vg_error *err)
        "the root is up to %.3g off the plane %c = %g (%.2g of the length of "
        "the body) and was moved into it",
        off, "xyz"[s->out.axis], s -> out.at, off / length);
+  none = vg_calloc(s->m->n_tri, 1);
+  if (!none) VG_TRY(vg_fail_memory(err, "the root of a half model"));
+  VG_TRY(drop(s, none, -1, err));
 done:
+  free(none);
   return st;
 }
 

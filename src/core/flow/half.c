@@ -7,11 +7,14 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/domain/farfield.h"
+#include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 
 #define ZERO 1e-3 /* F4: of the length: a plane this near is at 0 */
-#define FLAT 0.9  /* cosine of 26 degrees: inclination of an uneven root */
+#define FLAT 0.7  /* cosine of 45 degrees: inclination of an uneven root */
+#define WALL 0.3  /* cosine of 73 degrees: a wall next to an uneven root */
 
 void vg_flow_cap_release(struct vg_flow_cap *cap)
 {
@@ -193,12 +196,14 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
 {
   assert(axis >= 0 && axis < 3 && !out->point && !out->tri);
 
-  const double near = VG_HALF_NEAR * box_of(m).length;
   const size_t n = m->n_point;
-  uint32_t *image = vg_alloc(n, sizeof *image);
-  vg_status st = image ? VG_OK : vg_fail_memory(err, "the mirror image");
+  struct vg_border rim = VG_BORDER_INIT;
+  uint32_t *image = vg_calloc(n, sizeof *image);
+  vg_status st = VG_OK;
 
-  if (st < 0) goto done;
+  if (!image) VG_TRY(vg_fail_memory(err, "the mirror image"));
+  VG_TRY(vg_open_edges(m, &rim, err));
+  for (size_t i = 0; i < 2 * rim.n; i++) image[rim.edge[i / 2][i % 2]] = 1;
   out->point = vg_alloc(2 * n, sizeof *out->point);
   out->tri = vg_alloc(2 * m->n_tri, sizeof *out->tri);
   out->tri_patch = vg_alloc(2 * m->n_tri, sizeof *out->tri_patch);
@@ -212,8 +217,10 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
   for (size_t i = 0; i < n; i++) {
     double *x = out->point[out->n_point];
 
-    image[i] = (uint32_t)i;
-    if (fabs(m->point[i][axis] - at) <= near) continue;
+    if (image[i]) {
+      image[i] = (uint32_t)i;
+      continue;
+    }
     memcpy(x, m->point[i], sizeof *out->point);
     x[axis] = 2 * at - x[axis];
     image[i] = (uint32_t)out->n_point++;
@@ -230,6 +237,7 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
   }
   out->n_tri = 2 * m->n_tri;
 done:
+  vg_border_release(&rim);
   free(image);
   return st;
 }

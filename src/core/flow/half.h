@@ -47,9 +47,9 @@ vg_status vg_flow_looks_like_root(const struct vg_mesh *m,
 
 void vg_flow_cap_release(struct vg_flow_cap *cap);
 
-/** Join m with its mirror image across x[axis] = at. Points in the plane are
- * shared; triangles from number n_tri on are the image. *out is empty on
- * entry. */
+/** Join m with its mirror image across x[axis] = at. Points of open
+ * edges are shared; triangles from number n_tri on are the image. *out is empty
+ * on entry. */
 vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
                          struct vg_mesh *out, struct vg_error *err);
 
