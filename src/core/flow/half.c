@@ -14,9 +14,10 @@
 #include "core/geometry/vector.h"
 
 #define ZERO 1e-3 /* F4: of the length: a plane this near is at 0 */
-#define FLAT 0.7  /* cosine of 45 degrees: inclination of an uneven root */
-#define WALL 0.3  /* cosine of 73 degrees: a wall next to an uneven root */
-#define OWN 0.9   /* of its area in the cap: a patch that is the cap */
+/* F6 */
+#define FLAT 0.7 /* cosine of 45 degrees: inclination of an uneven root */
+#define WALL 0.3 /* cosine of 73 degrees: a wall next to an uneven root */
+#define OWN 0.9  /* of its area in the cap: a patch that is the cap */
 
 void vg_flow_cap_release(struct vg_flow_cap *cap)
 {
