@@ -170,6 +170,18 @@ vg_status vg_domain_flatten(struct vg_mesh *surface, int axis, double at,
   return st;
 }
 
+vg_status vg_domain_mark_open(const struct vg_mesh *surface, uint8_t *open,
+                              struct vg_error *err)
+{
+  struct vg_border edges = VG_BORDER_INIT;
+  vg_status st = vg_open_edges(surface, &edges, err);
+
+  for (size_t i = 0; i < 2 * edges.n && st >= 0; i++)
+    open[edges.edge[i / 2][i % 2]] = 1;
+  vg_border_release(&edges);
+  return st;
+}
+
 static vg_status find_symmetry(struct domain *d, struct vg_error *err)
 {
   const double *x;

@@ -8,8 +8,6 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
-#include "core/domain/farfield.h"
-#include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 
@@ -450,13 +448,12 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
   assert(axis >= 0 && axis < 3 && !out->point && !out->tri);
 
   const size_t n = m->n_point;
-  struct vg_border rim = VG_BORDER_INIT;
-  uint32_t *image = vg_calloc(n, sizeof *image);
+  uint32_t *image = vg_alloc(n, sizeof *image);
+  uint8_t *rim = vg_calloc(n, 1);
   vg_status st = VG_OK;
 
-  if (!image) VG_TRY(vg_fail_memory(err, "the mirror image"));
-  VG_TRY(vg_open_edges(m, &rim, err));
-  for (size_t i = 0; i < 2 * rim.n; i++) image[rim.edge[i / 2][i % 2]] = 1;
+  if (!image || !rim) VG_TRY(vg_fail_memory(err, "the mirror image"));
+  VG_TRY(vg_domain_mark_open(m, rim, err));
   out->point = vg_alloc(2 * n, sizeof *out->point);
   out->tri = vg_alloc(2 * m->n_tri, sizeof *out->tri);
   out->tri_patch = vg_alloc(2 * m->n_tri, sizeof *out->tri_patch);
@@ -470,10 +467,8 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
   for (size_t i = 0; i < n; i++) {
     double *x = out->point[out->n_point];
 
-    if (image[i]) {
-      image[i] = (uint32_t)i;
-      continue;
-    }
+    image[i] = (uint32_t)i;
+    if (rim[i]) continue;
     memcpy(x, m->point[i], sizeof *out->point);
     x[axis] = 2 * at - x[axis];
     image[i] = (uint32_t)out->n_point++;
@@ -490,7 +485,7 @@ vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
   }
   out->n_tri = 2 * m->n_tri;
 done:
-  vg_border_release(&rim);
+  free(rim);
   free(image);
   return st;
 }
