@@ -13,7 +13,8 @@
 
 #define ZERO 1e-3 /* F4: of the length: a plane this near is at 0 */
 /* F6 */
-#define FLAT 0.7 /* cosine of 45 degrees: inclination of an uneven root */
+#define FLAT 0.9 /* cosine of 26 degrees: inclination of an uneven root */
+#define FOLD 0.7 /* cosine of 45 degrees: a wall has smaller folds */
 #define WALL 0.3 /* cosine of 73 degrees: a wall next to an uneven root */
 #define OWN 0.9  /* of its area in the cap: a patch that is the cap */
 
@@ -311,7 +312,7 @@ static int is_smooth(const struct vg_mesh *m, size_t a, size_t b)
     vg_cross(u, w, n[i]);
   }
   return common == 2 &&
-         vg_dot(n[0], n[1]) >= FLAT * vg_norm(n[0]) * vg_norm(n[1]);
+         vg_dot(n[0], n[1]) >= FOLD * vg_norm(n[0]) * vg_norm(n[1]);
 }
 
 /* Of a set of triangles next to the cap, remove those that continue in the
