@@ -266,7 +266,7 @@ static double points_of_cap(const struct vg_mesh *m,
 
 /* Triangle t is next to the cap and was not taken for a part of it. */
 static vg_status refuse_root(const struct vg_mesh *m, size_t t,
-                             const struct vg_flow_cap *cap,
+                             const struct vg_flow_cap *cap, double wide,
                              struct vg_error *err)
 {
   const int k = cap->axis;
@@ -281,10 +281,12 @@ static vg_status refuse_root(const struct vg_mesh *m, size_t t,
                  "half %c: the cap at the root is uneven: point (%.9g, %.9g, "
                  "%.9g) is %.3g off the plane %c = %g, and its triangle may "
                  "belong to the cap or to the wall next to it. Move the points "
-                 "of the root into the plane, or give the surface without the "
-                 "cap",
+                 "of the root into the plane%s",
                  "xyz"[k], x[0], x[1], x[2], fabs(x[k] - cap->at), "xyz"[k],
-                 cap -> at);
+                 cap -> at,
+                 fabs(x[k] - cap->at) <= wide
+                   ? ", or give the cap a patch of its own"
+                   : "");
 }
 
 /* Triangle t has an edge on the cap, but is not in it: the point beyond that
@@ -351,16 +353,16 @@ static vg_status check_root(const struct vg_mesh *m, double near, double wide,
     const double *a = area[m->tri_patch[t]];
 
     if (cap->tri[t] || on_cap[v[0]] + on_cap[v[1]] + on_cap[v[2]] < 2) continue;
-    if (a[1] > OWN * (a[0] + a[1])) VG_TRY(refuse_root(m, t, cap, err));
+    if (a[1] > OWN * (a[0] + a[1])) VG_TRY(refuse_root(m, t, cap, wide, err));
     if (off_plane(m, t, cap->axis, cap->at) > wide ||
         cosine(m, t, cap->axis) < WALL)
       continue;
-    if (is_uneven) VG_TRY(refuse_root(m, t, cap, err));
+    if (is_uneven) VG_TRY(refuse_root(m, t, cap, wide, err));
     at[apex_of(v, on_cap)] = t;
   }
   drop_walls(m, cap, at);
   for (size_t i = 0; i < m->n_point; i++)
-    if (at[i] != SIZE_MAX) VG_TRY(refuse_root(m, at[i], cap, err));
+    if (at[i] != SIZE_MAX) VG_TRY(refuse_root(m, at[i], cap, wide, err));
 done:
   free(on_cap);
   free(area);
