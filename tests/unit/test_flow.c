@@ -776,6 +776,108 @@ static void a_given_root_is_removed(void **state)
   }
 }
 
+/* A prism whose wall has a row of points at y = row, and whose root is uneven
+ * by `off` at one point of its rim. */
+static struct vg_mesh with_row(double root, double row, double off)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  size_t n_tri;
+
+  add_prism(&m, 4, square, 0, 2, 0);
+  n_tri = m.n_tri;
+  m.point = realloc(m.point, 12 * sizeof *m.point);
+  m.tri = realloc(m.tri, (n_tri + 8) * sizeof *m.tri);
+  m.tri_patch = realloc(m.tri_patch, (n_tri + 8) * sizeof *m.tri_patch);
+  assert_true(m.point && m.tri && m.tri_patch);
+  for (size_t i = 0; i < 4; i++) {
+    memcpy(m.point[8 + i], m.point[i], sizeof *m.point);
+    m.point[8 + i][1] = row;
+    m.point[i][1] = root;
+  }
+  m.point[1][1] += off;
+  for (size_t t = 0; t < n_tri; t++) { /* walls begin at the row */
+    const uint32_t *v = m.tri[t];
+    const int is_wall = (v[0] < 4 || v[1] < 4 || v[2] < 4) &&
+                        (v[0] > 3 || v[1] > 3 || v[2] > 3);
+
+    for (int k = 0; k < 3 && is_wall; k++)
+      if (m.tri[t][k] < 4) m.tri[t][k] += 8;
+  }
+  for (uint32_t i = 0; i < 4; i++) {
+    const uint32_t j = (i + 1) % 4;
+    const uint32_t t[2][3] = { { i, 8 + j, j }, { i, 8 + i, 8 + j } };
+
+    memcpy(m.tri[m.n_tri], t, sizeof t);
+    for (int k = 0; k < 2; k++) m.tri_patch[m.n_tri++] = m.tri_patch[0];
+  }
+  m.n_point = 12;
+  return m;
+}
+
+/* A row of points next to the root, on either side of 0, does not change the
+ * decision; neither does the orientation. */
+static void a_row_next_to_the_root_is_no_root(void **state)
+{
+  static const double row[] = { 1e-3, 1e-4, 1e-5, 1e-7, 1e-9, 0, -5e-5 };
+  struct vg_flow_options o = plain;
+
+  (void)state;
+  o.half = VG_HALF_Y;
+  for (size_t i = 0; i < 2 * sizeof row / sizeof *row; i++) {
+    struct vg_mesh m = with_row(-1e-4, row[i / 2], 0);
+    struct answer a;
+
+    for (size_t t = 0; t < m.n_tri && i % 2; t++) {
+      const uint32_t v = m.tri[t][1];
+
+      m.tri[t][1] = m.tri[t][2];
+      m.tri[t][2] = v;
+    }
+    a = ask_with(&m, &o);
+    is_kind(&a, VG_FLOW_EXTERNAL);
+    assert_true(a.flow.axis == 1 && a.flow.n_cap_tri == 2);
+    assert_true(a.flow.at == (row[i / 2] > 5e-5 ? 0 : -1e-4));
+    assert_true(fabs(a.volume / 8 - 1) < 1e-3);
+  }
+}
+
+/* An uneven cap is removed as a whole, or refused. Its triangle at point 1 is
+ * steep, and belongs to the cap if the patch says so. */
+static void an_uneven_cap_is_not_removed_in_part(void **state)
+{
+  static const double thin[4][2] = {
+    { 0.9985, -0.0015 }, { 1, 0 }, { 0.9985, 0.0015 }, { -1, 0 }
+  };
+  struct vg_flow_options o = plain;
+
+  (void)state;
+  o.half = VG_HALF_Y;
+  for (int way = 0; way < 4; way++) {
+    const double off = way < 3 ? 1.9e-3 : 0.03;
+    struct vg_mesh m = with_row(0, 0.5, off);
+    const uint32_t root = patch_of(&m, "root", VG_BC_NONE);
+    struct answer a;
+
+    for (int i = 0; i < 12 && way; i++) {
+      m.point[i][0] = thin[i % 4][0];
+      m.point[i][2] = thin[i % 4][1];
+    }
+    for (size_t t = 0; t < m.n_tri && way > 1; t++) {
+      const uint32_t *v = m.tri[t];
+
+      if (v[0] < 4 && v[1] < 4 && v[2] < 4) m.tri_patch[t] = root;
+    }
+    a = ask_with(&m, &o);
+    if (way % 2) {
+      assert_int_equal(a.st, VG_ERR_INPUT);
+      continue;
+    }
+    is_kind(&a, VG_FLOW_EXTERNAL);
+    assert_true(a.flow.axis == 1 && a.flow.at == 0 && a.flow.n_cap_tri == 2);
+    assert_true(fabs(a.flow.root_off - off) < 1e-12);
+  }
+}
+
 /* The eight corners of a tube that is not along the axes are on one sphere. */
 static void a_turned_tube_is_a_body(void **state)
 {
@@ -922,6 +1024,8 @@ int main(void)
     cmocka_unit_test(a_cap_is_reported_or_removed),
     cmocka_unit_test(only_roots_are_reported),
     cmocka_unit_test(a_given_root_is_removed),
+    cmocka_unit_test(a_row_next_to_the_root_is_no_root),
+    cmocka_unit_test(an_uneven_cap_is_not_removed_in_part),
     cmocka_unit_test(a_turned_tube_is_a_body),
     cmocka_unit_test(a_symmetry_plane_of_a_domain_stays),
     cmocka_unit_test(open_tubes_are_not_decided),

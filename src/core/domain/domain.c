@@ -56,6 +56,19 @@ static void open_range(const struct domain *d, int k, double *lo, double *hi)
   }
 }
 
+/* Are all points of the body other than those of open edges, each of which
+ * begins one edge, on one side of 0, and further away from it than tol? */
+static int is_clear_of_zero(const struct domain *d, int k, double tol)
+{
+  const double sign = d->hi[k] > -d->lo[k] ? 1 : -1;
+  size_t n = 0, n_open = 0;
+
+  for (size_t i = 0; i < d->m.n_point; i++) n += sign * d->m.point[i][k] <= tol;
+  for (size_t i = 0; i < d->open.n; i++)
+    n_open += sign * d->m.point[d->open.edge[i][0]][k] <= tol;
+  return n <= n_open;
+}
+
 /* Coordinate axis across which the open edges are flat and the body is on one
  * side; -1 if no axis fits. */
 static int symmetry_axis(const struct domain *d, double tol)
@@ -67,6 +80,22 @@ static int symmetry_axis(const struct domain *d, double tol)
     open_range(d, k, &lo, &hi);
     if (hi - lo <= tol && d->hi[k] - d->lo[k] > 4 * tol &&
         (lo - d->lo[k] <= tol || d->hi[k] - hi <= tol))
+      return k;
+  }
+  return -1;
+}
+
+/* Axis of the plane at 0 from which no open edge is further away than `wide`
+ * and no other point nearer than tol; -1 if no axis fits. */
+static int axis_of_zero(const struct domain *d, double tol, double wide)
+{
+  for (int i = 0; i < 3; i++) {
+    const int k = (i + 1) % 3;
+    double lo, hi;
+
+    open_range(d, k, &lo, &hi);
+    if (lo >= -wide && hi <= wide && d->hi[k] - d->lo[k] > 4 * wide &&
+        is_clear_of_zero(d, k, tol))
       return k;
   }
   return -1;
@@ -91,23 +120,6 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
                  "xyz"[d->axis], d -> at);
 }
 
-/* Does no point of the body other than those of open edges, each of which
- * begins one edge, lie beyond 0? */
-static int is_clear_of_zero(const struct domain *d)
-{
-  const int k = d->axis, above = d->hi[k] > -d->lo[k];
-  size_t n = 0, n_open = 0;
-
-  for (size_t i = 0; i < d->m.n_point; i++)
-    n += above ? d->m.point[i][k] < 0 : d->m.point[i][k] > 0;
-  for (size_t i = 0; i < d->open.n; i++) {
-    const double x = d->m.point[d->open.edge[i][0]][k];
-
-    n_open += above ? x < 0 : x > 0;
-  }
-  return n <= n_open;
-}
-
 /* Set the plane of the open edges: axis (-1 if they are not in a plane) and
  * at. */
 static void find_plane(struct domain *d, int symmetry)
@@ -117,14 +129,16 @@ static void find_plane(struct domain *d, int symmetry)
   double lo, hi;
 
   d->axis = d->open.n ? symmetry_axis(d, tol) : -1;
-  if (d->open.n && d->axis < 0 && symmetry > 1)
-    d->axis = symmetry_axis(d, wide);
+  if (d->open.n && d->axis < 0 && symmetry > 1) {
+    d->axis = axis_of_zero(d, tol, wide);
+    if (d->axis < 0) d->axis = symmetry_axis(d, wide);
+  }
   if (d->axis < 0) return;
   open_range(d, d->axis, &lo, &hi);
   d->at = hi - lo > tol && d->hi[d->axis] - hi < lo - d->lo[d->axis] ? hi : lo;
   if ((fabs(lo) <= tol && fabs(hi) <= tol) ||
       (symmetry > 1 && fabs(lo) <= wide && fabs(hi) <= wide &&
-       is_clear_of_zero(d)))
+       is_clear_of_zero(d, d->axis, tol)))
     d->at = 0;
 }
 
@@ -153,6 +167,18 @@ vg_status vg_domain_flatten(struct vg_mesh *surface, int axis, double at,
   assert(axis >= 0 && axis < 3 && off);
   if (st >= 0) *off = flatten(surface, &open, axis, at);
   vg_border_release(&open);
+  return st;
+}
+
+vg_status vg_domain_mark_open(const struct vg_mesh *surface, uint8_t *open,
+                              struct vg_error *err)
+{
+  struct vg_border edges = VG_BORDER_INIT;
+  vg_status st = vg_open_edges(surface, &edges, err);
+
+  for (size_t i = 0; i < 2 * edges.n && st >= 0; i++)
+    open[edges.edge[i / 2][i % 2]] = 1;
+  vg_border_release(&edges);
   return st;
 }
 

@@ -126,6 +126,10 @@ struct vg_domain_report {
 vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry, int *axis,
                          double *at, struct vg_error *err);
 
+/** Mark the points of open edges. open: [surface->n_point] 0 on entry. */
+vg_status vg_domain_mark_open(const struct vg_mesh *surface, uint8_t *open,
+                              struct vg_error *err);
+
 /** Move the points of open edges into the plane x[axis] = at. off: out, the
  * largest distance. */
 vg_status vg_domain_flatten(struct vg_mesh *surface, int axis, double at,

@@ -122,10 +122,12 @@ static int has_rims(const struct vg_surface_report *r)
          !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
 }
 
-/* Move the rim of a half model into its plane. */
+/* Move the rim of a half model into its plane. If it was off the plane, repeat
+ * the surface check. */
 static vg_status flatten_root(struct settle *s, struct vg_error *err)
 {
   double lo[3], hi[3], length = 0, off;
+  uint8_t *none = NULL;
   vg_status st;
 
   vg_mesh_bounds(s->m, lo, hi);
@@ -137,8 +139,36 @@ static vg_status flatten_root(struct settle *s, struct vg_error *err)
        "the root is up to %.3g off the plane %c = %g (%.2g of the length of "
        "the body) and was moved into it",
        off, "xyz"[s->out.axis], s -> out.at, off / length);
+  none = vg_calloc(s->m->n_tri, 1);
+  if (!none) VG_TRY(vg_fail_memory(err, "the root of a half model"));
+  VG_TRY(drop(s, none, -1, err));
 done:
+  free(none);
   return st;
+}
+
+/* The rim of a cap that was removed is too far off its plane. */
+static vg_status refuse_rim(const struct settle *s, struct vg_error *err)
+{
+  const int k = s->out.cap_axis;
+  const struct vg_surface_report *r = s->r;
+  const double *x = NULL;
+
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const double *y = r->defect[i].at;
+
+    if (r->defect[i].kind == VG_DEFECT_OPEN_EDGE &&
+        (!x || fabs(y[k] - s->out.cap_at) > fabs(x[k] - s->out.cap_at)))
+      x = y;
+  }
+  assert(x);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "half %c: the rim of the root is %.3g off the plane %c = %g "
+                 "at (%.9g, %.9g, %.9g) and cannot be moved into a plane at "
+                 "the end of the body by at most %g of its length. Move the "
+                 "points of the root into the plane",
+                 "xyz"[k], fabs(x[k] - s->out.cap_at), "xyz"[k],
+                 s -> out.cap_at, x[0], x[1], x[2], VG_ROOT_OFF);
 }
 
 /* An open surface may be a half model. */
@@ -155,6 +185,8 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
 
   if (symmetry < 0 || !has_rims(s->r)) return VG_OK;
   VG_TRY(vg_domain_half(s->m, symmetry, &axis, &at, err));
+  if (axis < 0 && half >= VG_HALF_X && s->out.n_cap_tri)
+    VG_TRY(refuse_rim(s, err));
   if (axis < 0) goto done;
   if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) {
     st = vg_fail(err, VG_ERR_INPUT,

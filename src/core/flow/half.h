@@ -28,9 +28,12 @@ struct vg_flow_cap {
  *
  * @param half          VG_HALF_X to _Z: only a cap normal to this axis, at any
  *                      coordinate, but not the tip of a body on one side of 0.
- * It may be uneven or inclined by VG_ROOT_OFF.
+ *                      It may be uneven or inclined by VG_ROOT_OFF; `at` is
+ *                      then its outermost coordinate.
  * @param by_condition  out: 1 if the cap has a symmetry condition or name
- * O(n), plus the cost of the border of the cap. */
+ * VG_ERR_INPUT if only a part of an uneven cap would be found: the message
+ * names the point and its distance. O(n), plus the cost of the border of the
+ * cap. */
 vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
                            struct vg_flow_cap *cap, int *by_condition,
                            struct vg_error *err);
@@ -47,9 +50,9 @@ vg_status vg_flow_looks_like_root(const struct vg_mesh *m,
 
 void vg_flow_cap_release(struct vg_flow_cap *cap);
 
-/** Join m with its mirror image across x[axis] = at. Points in the plane are
- * shared; triangles from number n_tri on are the image. *out is empty on
- * entry. */
+/** Join m with its mirror image across x[axis] = at. Points of open
+ * edges are shared; triangles from number n_tri on are the image. *out is empty
+ * on entry. */
 vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
                          struct vg_mesh *out, struct vg_error *err);
 

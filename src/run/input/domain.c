@@ -460,7 +460,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   const size_t n_own = b->surface.n_patch;
   vg_status st;
 
-  far.symmetry = b->flow.axis < 0 ? -1 : b->flow.root_off > 0 ? 2 : 1;
+  far.symmetry = b->flow.axis < 0 ? -1 : 1;
   VG_TRY(check_farfield(b, &far, err));
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };

@@ -87,3 +87,38 @@ vanguard mesh -q -p brick --farfield-lengths 3 --growth 1.5
 exits 0
 says out "External flow around 1 closed body; farfield added."
 says out "flow internal"
+
+# The root of half a body is 1e-4 beyond 0, with a row of points next to it: it
+# is moved to 0 if the row is clear of 0. A cap that is uneven at one point is
+# removed as a whole, or refused.
+half() { # half NAME ROOT CORNER ROW: half a box, 1 x 2 x 1
+  {
+    printf 'v 0 %s 0\nv 1 %s 0\nv 1 %s 1\nv 0 %s 1\n' "$2" "$3" "$2" "$2"
+    printf 'v 0 %s 0\nv 1 %s 0\nv 1 %s 1\nv 0 %s 1\n' "$4" "$4" "$4" "$4"
+    printf 'v 0 2 0\nv 1 2 0\nv 1 2 1\nv 0 2 1\n'
+    printf 'g root\nf 1 2 3\nf 1 3 4\ng wall\n'
+    printf 'f 9 11 10\nf 9 12 11\n'
+    for i in 1 2 3 4 5 6 7 8; do
+      j=$((i % 4 ? i + 1 : i - 3))
+      printf 'f %d %d %d\nf %d %d %d\n' $i $((j + 4)) $j $i $((i + 4)) $((j + 4))
+    done
+  } >"$1.obj"
+}
+half near -1e-4 -1e-4 1e-7
+vanguard check -q near.obj --half y
+exits 0
+says out "External flow around 1 closed body (half model, cut at y = -0.0001)"
+half clear -1e-4 -1e-4 1e-3
+vanguard check -q clear.obj --half y
+exits 0
+says out "half model, cut at y = 0)"
+says out "is up to 0.0001 off the plane y = 0; it was moved into this plane"
+half uneven 0 1.9e-3 1
+vanguard check -q uneven.obj --half y
+exits 0
+says out "the flat cap at y = 0 (2 triangles)"
+says out "is up to 0.0019 off the plane y = 0; it was moved into this plane"
+half far 0 0.05 1
+vanguard check -q far.obj --half y
+exits 1
+says err "has no flat cap at an end in y"
