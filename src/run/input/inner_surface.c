@@ -3,6 +3,7 @@
  * surface before it is checked and closed, and put back, doubled, when it
  * bounds a fluid. */
 #include <assert.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,8 +24,8 @@ static vg_status refuse_changes(const struct vg_boundary *b,
   const struct vg_settings *s = &b->read->settings;
   const char *what = s->weld > 0                  ? "weld"
                    : s->wrap > 0                  ? "wrap"
-                   : s->remesh == VG_ANSWER_YES   ? "remesh"
-                   : s->swap == VG_ANSWER_YES     ? "swap"
+                   : s->remesh == VG_ANSWER_YES   ? "remesh_surface"
+                   : s->swap == VG_ANSWER_YES     ? "surface_swap"
                    : b->model.cad                 ? "a CAD model"
                    : strcmp(s->mesher, "builtin") ? "mesher"
                    : vg_boundary_is_stretched(b)  ? "stretched sizes"
@@ -47,8 +48,25 @@ static vg_status refuse_all(const struct vg_boundary *b, struct vg_error *err)
                  b->read->files.stem, b->read->settings.baffles);
 }
 
-/* Adds a patch for the other side of patch i: NAME_back, with a new number and
- * the same conditions. */
+static int has_name(const struct vg_mesh *m, const char *name)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (!strcmp(m->patch[i].name, name)) return 1;
+  return 0;
+}
+
+/* NAME_back, or NAME_back_ID if another patch has this name. */
+static void name_back(const struct vg_mesh *m, const char *front, int32_t id,
+                      char name[VG_NAME_MAX])
+{
+  snprintf(name, VG_NAME_MAX, "%.*s_back", VG_NAME_MAX - 6, front);
+  for (int64_t n = id; has_name(m, name); n++)
+    snprintf(name, VG_NAME_MAX, "%.*s_back_%" PRId64, VG_NAME_MAX - 27, front,
+             n);
+}
+
+/* Adds a patch for the other side of patch i, with a new number and the same
+ * conditions. */
 static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
 {
   struct vg_mesh *m = &b->surface;
@@ -64,9 +82,7 @@ static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
                    "no number is left for the back of patch %d; renumber the "
                    "patches",
                    (int)m->patch[i].id);
-  if (*m->patch[i].name)
-    snprintf(name, sizeof name, "%.*s_back", (int)sizeof name - 6,
-             m->patch[i].name);
+  if (*m->patch[i].name) name_back(m, m->patch[i].name, id + 1, name);
   at = vg_mesh_add_patch(m, id + 1, name);
   if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
   back = &m->patch[at];
@@ -83,7 +99,39 @@ static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
   return VG_OK;
 }
 
-/* Moves the triangles of inner patches to `inner`, which gets all points. */
+/* Drops the points of m that only triangles of `inner` have. Other points that
+ * no triangle has are those of the input, which the check reports. */
+static vg_status drop_points(struct vg_mesh *m, const struct vg_mesh *inner,
+                             struct vg_error *err)
+{
+  uint8_t *keep = vg_alloc(m->n_point, 1);
+  uint32_t *to = vg_alloc(m->n_point, sizeof *to);
+  size_t n = 0;
+
+  if (!keep || !to) {
+    free(keep);
+    free(to);
+    return vg_fail_memory(err, "the inner surfaces");
+  }
+  memset(keep, 1, m->n_point);
+  for (size_t t = 0; t < 3 * inner->n_tri; t++)
+    keep[inner->tri[t / 3][t % 3]] = 0;
+  for (size_t t = 0; t < 3 * m->n_tri; t++) keep[m->tri[t / 3][t % 3]] = 1;
+  for (size_t p = 0; p < m->n_point; p++) {
+    if (keep[p]) memmove(m->point[n], m->point[p], sizeof *m->point);
+    to[p] = (uint32_t)n;
+    n += keep[p];
+  }
+  for (size_t t = 0; t < 3 * m->n_tri; t++)
+    m->tri[t / 3][t % 3] = to[m->tri[t / 3][t % 3]];
+  m->n_point = n;
+  free(keep);
+  free(to);
+  return VG_OK;
+}
+
+/* Moves the triangles of inner patches to `inner`, with copies of all points.
+ */
 static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
                            struct vg_error *err)
 {
@@ -105,7 +153,7 @@ static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
     to->tri_patch[at] = patch;
   }
   m->n_tri = n;
-  return VG_OK;
+  return drop_points(m, inner, err);
 }
 
 vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
