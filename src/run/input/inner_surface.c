@@ -326,6 +326,17 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
             "%zu edges of inner surfaces were cut, because triangles with all "
             "corners on free edges would have the same points on both sides",
             r.n_cut);
+  if (r.n_sealed)
+    vg_note(b->notes,
+            "regions of the fluid that inner surfaces seal off from the rest: "
+            "%zu; all are meshed, and no fluid passes between them",
+            r.n_sealed);
+  if (r.n_near)
+    vg_note(b->notes,
+            "gaps next to inner surfaces that are narrower than 1e-3 of the "
+            "edges: %zu pairs of triangles, the narrowest %.3g wide near "
+            "(%g, %g, %g); cells in them are flat",
+            r.n_near, r.gap, r.at[0], r.at[1], r.at[2]);
 done:
   free(is_inner);
   free(back);

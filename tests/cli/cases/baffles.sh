@@ -81,6 +81,21 @@ exits 0
 vanguard check o_across/across.b8.ugrid
 says out "connected regions: 2"
 
+vanguard check across.stl --flow internal --baffles mid
+exits 0
+says out "inner surfaces seal off from the rest: 1;"
+
+# A sheet that misses a wall by rounding is refused; a narrow gap has a note.
+duct missed "fin 4 4  0.5 0.25 1e-13  0 0.5 0  0 0 0.5"
+vanguard check missed.stl --flow internal --baffles fin
+exits 1
+says err "patch 7 fin, an inner surface, nearly touches patch 1 w1: "
+says err "the narrowest one of 1e-13 near (0.5, "
+duct narrow "fin 4 4  0.5 0.25 1e-5  0 0.5 0  0 0 0.5"
+vanguard check narrow.stl --flow internal --baffles fin
+exits 0
+says out "gaps next to inner surfaces that are narrower than 1e-3 of the edges"
+
 # Same bytes with threads and in any decomposition.
 ways="advancing octree"
 vanguard --version --verbose
