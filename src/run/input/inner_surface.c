@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/edges.h"
 #include "core/sides/inner.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
@@ -180,6 +181,66 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
 done:
   free(on);
   return st;
+}
+
+/* --- suggested -------------------------------------------------------------
+ */
+
+/* Whether the triangles that are not marked close the surface. */
+static int is_closed_without(const struct vg_mesh *m, const uint8_t *is_sheet)
+{
+  struct vg_edges e = VG_EDGES_INIT;
+  struct vg_error why = VG_ERROR_INIT;
+  int is_closed;
+
+  if (vg_edges_build(&e, m->n_point, m->n_tri, (const uint32_t(*)[3])m->tri,
+                     is_sheet, 1, &why) < 0)
+    return 0;
+  is_closed = e.n > 0;
+  for (size_t i = 0; i < e.n; i++)
+    is_closed &= e.start[i + 1] - e.start[i] == 2;
+  vg_edges_release(&e);
+  return is_closed;
+}
+
+/* The numbers of the marked patches, "" if they are too many for a message. */
+static void list_sheets(const struct vg_mesh *m, const uint8_t *on, char *list,
+                        size_t size)
+{
+  size_t n = 0;
+
+  *list = 0;
+  for (size_t i = 0; i < m->n_patch && n < size; i++)
+    if (on[i])
+      n += (size_t)snprintf(list + n, size - n, "%s%d", n ? "," : "",
+                            (int)m->patch[i].id);
+  if (n >= size) *list = 0;
+}
+
+int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
+                              size_t size)
+{
+  const struct vg_mesh *m = &b->surface;
+  const struct vg_surface_report *r = &b->check;
+  uint8_t *on = vg_calloc(m->n_patch, 1), *is_sheet = vg_calloc(m->n_tri, 1);
+  char list[48] = "";
+
+  for (size_t i = 0; on && i < r->n_defect; i++)
+    if (r->defect[i].kind == VG_DEFECT_OPEN_EDGE)
+      on[m->tri_patch[r->defect[i].face[0]]] = 1;
+  for (size_t t = 0; on && is_sheet && t < m->n_tri; t++)
+    is_sheet[t] = on[m->tri_patch[t]];
+  if (on && is_sheet && r->count[VG_DEFECT_OPEN_EDGE] &&
+      is_closed_without(m, is_sheet))
+    list_sheets(m, on, list, sizeof list);
+  free(on);
+  free(is_sheet);
+  if (*list)
+    snprintf(
+      text, size,
+      "; if fluid is on both sides of its open sheets, give --baffles %s",
+      list);
+  return *list != 0;
 }
 
 /* --- check -----------------------------------------------------------------

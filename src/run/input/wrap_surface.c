@@ -155,6 +155,9 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
 
   *text = 0;
   if (b->remedy != VG_REMEDY_NOW) b->remedy = VG_REMEDY_ASKED;
+  if (!b->model.cad && !b->read->settings.wrap && !b->read->settings.weld &&
+      !*b->read->settings.baffles && vg_boundary_suggest_inner(b, text, size))
+    return;
   if (b->remedy != VG_REMEDY_NOW || !vg_wrap_is_available(NULL, 0) ||
       b->read->settings.wrap > 0 || *b->read->settings.baffles ||
       b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||

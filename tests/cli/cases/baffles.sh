@@ -193,3 +193,10 @@ says out "baffles has no effect on a volume mesh"
 vanguard mesh fin.stl --flow internal
 exits 1
 says err "16 defects"
+says err "both sides of its open sheets, give --baffles 7"
+vanguard check free.stl --flow internal
+exits 1
+says err "both sides of its open sheets, give --baffles 7"
+vanguard check open.stl
+exits 1
+lacks err "baffles"
