@@ -145,6 +145,44 @@ static void a_wall_across(void **state)
   (void)state;
   assert_int_equal(make(&m, o, u, v, 4, &r, NULL), VG_OK);
   expect(&m, &r, 32, 0, 25);
+  assert_int_equal(r.n_sealed, 1);
+  assert_int_equal(r.n_near, 0);
+  vg_mesh_release(&m);
+}
+
+/* An edge at a small distance from the wall at z = -1. */
+static void sheets_near_walls(void **state)
+{
+  const double o[3] = { -.5, .2, -1 + 1e-4 }, v[3] = { 0, 0, 1 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, x, v, 2, &r, NULL), VG_OK);
+  assert_int_equal(r.n_sealed, 0);
+  assert_in_range(r.n_near, 1, 99);
+  assert_true(fabs(r.gap - 1e-4) < 1e-12);
+  assert_true(r.at[2] > -1 && r.at[2] < -.5);
+  vg_mesh_release(&m);
+}
+
+/* Edges of two sheets that pass each other, far from all corners. */
+static void edges_that_pass(void **state)
+{
+  const double below[3] = { .03, -.5, -.5 }, above[3] = { -.5, .07, 1e-4 };
+  const double up[3] = { 0, 0, .5 };
+  struct vg_inner_report r;
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  shape_box(&m, 4, 1);
+  add_sheet(&m, below, y, up, 1);
+  add_sheet(&m, above, x, up, 1);
+  for (size_t t = m.n_tri - 4; t < m.n_tri; t++)
+    m.tri_patch[t] = (uint32_t)m.n_patch - 1;
+  assert_int_equal(put_back(&m, &r, NULL), VG_OK);
+  assert_int_equal(r.n_near, 1);
+  assert_true(fabs(r.gap - 1e-4) < 1e-12);
   vg_mesh_release(&m);
 }
 
@@ -168,11 +206,13 @@ static void sheets_outside(void **state)
 {
   const double far[3] = { 5, 0, 0 }, on_wall[3] = { -.5, 0, 1 };
   const double corner[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
+  const double rounded[3] = { -.5, .2, -1 + 1e-12 };
 
   (void)state;
   expect_refused(far, y, "not in the fluid");
   expect_refused(on_wall, up, "not in the fluid");
   expect_refused(corner, up, "single point");
+  expect_refused(rounded, up, "nearly touches patch ");
 }
 
 /* --- meshes ----------------------------------------------------------------
@@ -248,6 +288,8 @@ int main(void)
     cmocka_unit_test(a_single_triangle),
     cmocka_unit_test(a_sheet_on_a_wall),
     cmocka_unit_test(a_wall_across),
+    cmocka_unit_test(sheets_near_walls),
+    cmocka_unit_test(edges_that_pass),
     cmocka_unit_test(sheets_outside),
     cmocka_unit_test(any_decomposition),
     cmocka_unit_test(leaves_that_fail),

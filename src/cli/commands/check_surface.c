@@ -178,7 +178,9 @@ static vg_status print_text(const struct vg_check_surface *a,
                          vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);
-  if (!b->check.n_defect) printf("  no defects\n");
+  if (!b->check.n_defect)
+    printf("  no defects%s\n",
+           b->inner.n_tri ? " without the inner surfaces" : "");
 done:
   return st;
 }
@@ -214,6 +216,23 @@ done:
   return st;
 }
 
+/* Defects that are found only when the surface is closed, as of inner surfaces
+ * or next to an added boundary. They replace *body. */
+static vg_status examine_closed(const struct vg_check_surface *a,
+                                const struct vg_boundary *b, json_t **body,
+                                struct vg_error *err)
+{
+  json_decref(*body);
+  *body = vg_report_surface_json(&b->surface, &b->check, b->read->unit,
+                                 VG_LISTED_DEFECTS);
+  if (!a->json) {
+    printf("\nClosed surface\n");
+    vg_report_surface_text(stdout, &b->surface, &b->check, b->read->unit,
+                           vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
+  }
+  return write_defects(a, &b->surface, &b->check, err);
+}
+
 /* The last line for a surface that vanguard mesh accepts, and why defects that
  * were listed do not prevent it. */
 static void print_accepted(const struct vg_flow *f, size_t n_open,
@@ -241,7 +260,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   struct vg_error why = VG_ERROR_INIT;
   struct findings f = { 0 };
   json_t *body = NULL;
-  size_t n_note, n_open, n_defect;
+  size_t n_note, n_open, n_defect, n_tri;
   vg_status st = vg_boundary_shape(&p->read, &o, show, b, &why), shape = st;
 
   if (st < 0 && !b->check.face_kinds) {
@@ -254,13 +273,15 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   n_note = p->notes.n;
   n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
   n_defect = b->check.n_defect;
+  n_tri = b->surface.n_tri;
   if (shape >= 0) shape = finish(b, show, &why);
   vg_problem_note_unused(p, 0, 1u << VG_USE_VOLUME);
   vg_display_clear(show);
+  for (size_t i = n_note; !a->json && i < p->notes.n; i++)
+    printf("  note: %s\n", p->notes.text[i]);
+  if (shape < 0 && b->check.n_defect && b->surface.n_tri != n_tri)
+    VG_TRY(examine_closed(a, b, &body, err));
   if (a->json) print_json(a, b, &f, body, shape, &why);
-  else
-    for (size_t i = n_note; i < p->notes.n; i++)
-      printf("  note: %s\n", p->notes.text[i]);
   if (shape < 0) st = vg_fail(err, shape, "%s", why.text);
   else if (!a->json) print_accepted(&b->flow, n_open, n_defect);
 done:

@@ -20,6 +20,9 @@
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
 
+#define NO_BAFFLES                                                             \
+  "baffles has no effect on a volume mesh, whose inner surfaces have two sides"
+
 struct arguments {
   struct vg_cli_one one;
   const char *deck, *defects, *against, *vtu;
@@ -184,6 +187,8 @@ static void put_json(const struct arguments *a, const struct vg_problem *p,
   if (f->has_accuracy)
     json_object_set_new(o, "accuracy",
                         vg_report_accuracy_json(&f->accuracy, f->m));
+  if (*p->asked.baffles)
+    json_object_set_new(o, "notes", json_pack("[s]", NO_BAFFLES));
   if (!r->is_valid) vg_report_error_json(o, err);
   print_json(o, a);
 }
@@ -204,6 +209,7 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   if (inner->n_face)
     printf("  note: " VG_INNER_FACES_NOTE "\n", a->one.file, inner->n_face,
            inner->patches);
+  if (*p->asked.baffles) printf("  note: %s\n", NO_BAFFLES);
   for (size_t i = 0; a->sizes && i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);
   vg_report_mesh_text(stdout, &f->quality, 1);

@@ -108,6 +108,7 @@ static vg_status make(struct vg_inner_work *s, const uint32_t *back,
 
   VG_TRY(build(s, err));
   VG_TRY(vg_inner_check(s, err));
+  VG_TRY(vg_inner_near(s, err));
   do {
     VG_TRY(vg_inner_cut(s, &n_cut, err));
     if (n_cut) VG_TRY(build(s, err));

@@ -21,10 +21,16 @@
 #include "core/mesh/mesh.h"
 
 struct vg_inner_report {
-  size_t n_tri;   /* triangles of the sheets, each counted once */
-  size_t n_cut;   /* edges cut because a triangle had all its corners on free
-                     edges, so that its two sides had the same points */
-  size_t n_point; /* points that were added as copies */
+  size_t n_tri;    /* triangles of the sheets, each counted once */
+  size_t n_cut;    /* edges cut because a triangle had all its corners on free
+                      edges, so that its two sides had the same points */
+  size_t n_point;  /* points that were added as copies */
+  size_t n_sealed; /* regions of the fluid that the sheets separate from the
+                      others */
+  size_t n_near;   /* pairs of triangles of a sheet and a surface that have no
+                      common point, and a gap below 1e-3 of their edges */
+  double gap;      /* the narrowest one: narrowest as a share of edges */
+  double at[3];    /* near it */
 };
 
 /** Double the sheets of a boundary.
@@ -39,7 +45,8 @@ struct vg_inner_report {
  *                  the same
  *
  * Copies of points follow the other points. VG_ERR_GEOMETRY, with the place, if
- * a sheet is not in the fluid, or touches a surface in a single point.
+ * a sheet is not in the fluid, touches a surface in a single point, or nearly
+ * touches it: a gap below 1e-6 of the edges is due to rounding.
  * VG_ERR_MEMORY. O(n log n), plus O(n) for each sheet that is connected with no
  * other surface. */
 vg_status vg_inner_double(struct vg_mesh *m, const uint8_t *is_inner,

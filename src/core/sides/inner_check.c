@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/union_find.h"
 #include "core/geometry/predicates.h"
 #include "core/sides/inner_parts.h"
 
@@ -144,6 +145,26 @@ static void mark_regions(const struct vg_inner_work *s, uint8_t *has)
                                                      : HAS_FLUID;
 }
 
+/* Triangles that edges connect belong to one component, which has one region of
+ * fluid unless its sheets divide it. */
+static vg_status count_sealed(const struct vg_inner_work *s, const uint8_t *has,
+                              struct vg_error *err)
+{
+  const struct vg_sides *a = &s->sides;
+  uint32_t *up = vg_alloc(a->n_region, sizeof *up);
+
+  if (!up) return vg_fail_memory(err, "the sides of a sheet");
+  for (uint32_t r = 0; r < a->n_region; r++) up[r] = r;
+  for (size_t t = 0; t < a->n_tri; t++)
+    vg_union(up, a->region[2 * t], a->region[2 * t + 1]);
+  s->report->n_sealed = 0;
+  for (uint32_t r = 0; r < a->n_region; r++)
+    s->report->n_sealed += !(has[r] & HAS_SOLID);
+  for (uint32_t r = 0; r < a->n_region; r++) s->report->n_sealed -= up[r] == r;
+  free(up);
+  return VG_OK;
+}
+
 /* A region on the solid side of walls has no sheets. A sheet without walls is
  * one region with both sides, or encloses a part of the space: then one of its
  * points decides, once for each region. */
@@ -162,6 +183,7 @@ static vg_status check_regions(const struct vg_inner_work *s,
     else if (!(*is & HAS_FLUID)) st = check_alone(s, h / 2, err);
     *is |= HAS_FLUID;
   }
+  if (st >= 0) st = count_sealed(s, has, err);
   free(has);
   return st;
 }

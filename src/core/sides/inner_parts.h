@@ -20,8 +20,14 @@ static inline int vg_is_sheet(const struct vg_inner_work *s, size_t tri)
 }
 
 /** VG_ERR_GEOMETRY if a sheet is not in the fluid or touches a surface in a
- * point. (inner_check.c) */
+ * point. Sealed regions go to s->report. (inner_check.c) */
 vg_status vg_inner_check(const struct vg_inner_work *s, struct vg_error *err);
+
+/** VG_ERR_GEOMETRY, with the narrowest place, if a sheet nearly touches a
+ * surface or itself: triangles without a common point, which no edge joins, are
+ * nearer than 1e-6 of the longest edge of one of them. Pairs nearer than 1e-3
+ * go to s->report. O(n log n). (inner_near.c) */
+vg_status vg_inner_near(const struct vg_inner_work *s, struct vg_error *err);
 
 /** Cut edges of triangles of which all corners have one sector, so that both
  * sides would have the same points: the longest edge that has other triangles,

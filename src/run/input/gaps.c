@@ -103,12 +103,13 @@ static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
                  "gap_edges %g needs about %.2g %s in gaps, but the limit is "
                  "%.9g%s; the narrowest gap is %.4g wide, between patches %s "
                  "and %s at (%.6g, %.6g, %.6g). Reduce gap_edges, increase "
-                 "hmin, or close the gap (--wrap)%s",
+                 "hmin, or close the gap%s%s",
                  s->gap_edges, is_tri ? g->n_tri : g->n_place,
                  is_tri ? "surface triangles" : "size samples",
                  is_tri ? most_tri : MOST_PLACE,
                  is_tri && s->max_cells ? " (max_cells)" : "", g->narrowest,
                  one, two, g->at[0], g->at[1], g->at[2],
+                 *s->baffles ? "" : " (--wrap)",
                  is_tri && s->max_cells ? "; or increase max_cells" : "");
 }
 

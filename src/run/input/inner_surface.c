@@ -3,10 +3,12 @@
  * surface before it is checked and closed, and put back, doubled, when it
  * bounds a fluid. */
 #include <assert.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/edges.h"
 #include "core/sides/inner.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
@@ -23,8 +25,8 @@ static vg_status refuse_changes(const struct vg_boundary *b,
   const struct vg_settings *s = &b->read->settings;
   const char *what = s->weld > 0                  ? "weld"
                    : s->wrap > 0                  ? "wrap"
-                   : s->remesh == VG_ANSWER_YES   ? "remesh"
-                   : s->swap == VG_ANSWER_YES     ? "swap"
+                   : s->remesh == VG_ANSWER_YES   ? "remesh_surface"
+                   : s->swap == VG_ANSWER_YES     ? "surface_swap"
                    : b->model.cad                 ? "a CAD model"
                    : strcmp(s->mesher, "builtin") ? "mesher"
                    : vg_boundary_is_stretched(b)  ? "stretched sizes"
@@ -47,8 +49,25 @@ static vg_status refuse_all(const struct vg_boundary *b, struct vg_error *err)
                  b->read->files.stem, b->read->settings.baffles);
 }
 
-/* Adds a patch for the other side of patch i: NAME_back, with a new number and
- * the same conditions. */
+static int has_name(const struct vg_mesh *m, const char *name)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (!strcmp(m->patch[i].name, name)) return 1;
+  return 0;
+}
+
+/* NAME_back, or NAME_back_ID if another patch has this name. */
+static void name_back(const struct vg_mesh *m, const char *front, int32_t id,
+                      char name[VG_NAME_MAX])
+{
+  snprintf(name, VG_NAME_MAX, "%.*s_back", VG_NAME_MAX - 6, front);
+  for (int64_t n = id; has_name(m, name); n++)
+    snprintf(name, VG_NAME_MAX, "%.*s_back_%" PRId64, VG_NAME_MAX - 27, front,
+             n);
+}
+
+/* Adds a patch for the other side of patch i, with a new number and the same
+ * conditions. */
 static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
 {
   struct vg_mesh *m = &b->surface;
@@ -64,9 +83,7 @@ static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
                    "no number is left for the back of patch %d; renumber the "
                    "patches",
                    (int)m->patch[i].id);
-  if (*m->patch[i].name)
-    snprintf(name, sizeof name, "%.*s_back", (int)sizeof name - 6,
-             m->patch[i].name);
+  if (*m->patch[i].name) name_back(m, m->patch[i].name, id + 1, name);
   at = vg_mesh_add_patch(m, id + 1, name);
   if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
   back = &m->patch[at];
@@ -83,7 +100,39 @@ static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
   return VG_OK;
 }
 
-/* Moves the triangles of inner patches to `inner`, which gets all points. */
+/* Drops the points of m that only triangles of `inner` have. Other points that
+ * no triangle has are those of the input, which the check reports. */
+static vg_status drop_points(struct vg_mesh *m, const struct vg_mesh *inner,
+                             struct vg_error *err)
+{
+  uint8_t *keep = vg_alloc(m->n_point, 1);
+  uint32_t *to = vg_alloc(m->n_point, sizeof *to);
+  size_t n = 0;
+
+  if (!keep || !to) {
+    free(keep);
+    free(to);
+    return vg_fail_memory(err, "the inner surfaces");
+  }
+  memset(keep, 1, m->n_point);
+  for (size_t t = 0; t < 3 * inner->n_tri; t++)
+    keep[inner->tri[t / 3][t % 3]] = 0;
+  for (size_t t = 0; t < 3 * m->n_tri; t++) keep[m->tri[t / 3][t % 3]] = 1;
+  for (size_t p = 0; p < m->n_point; p++) {
+    if (keep[p]) memmove(m->point[n], m->point[p], sizeof *m->point);
+    to[p] = (uint32_t)n;
+    n += keep[p];
+  }
+  for (size_t t = 0; t < 3 * m->n_tri; t++)
+    m->tri[t / 3][t % 3] = to[m->tri[t / 3][t % 3]];
+  m->n_point = n;
+  free(keep);
+  free(to);
+  return VG_OK;
+}
+
+/* Moves the triangles of inner patches to `inner`, with copies of all points.
+ */
 static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
                            struct vg_error *err)
 {
@@ -105,7 +154,7 @@ static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
     to->tri_patch[at] = patch;
   }
   m->n_tri = n;
-  return VG_OK;
+  return drop_points(m, inner, err);
 }
 
 vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
@@ -132,6 +181,66 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
 done:
   free(on);
   return st;
+}
+
+/* --- suggested -------------------------------------------------------------
+ */
+
+/* Whether the triangles that are not marked close the surface. */
+static int is_closed_without(const struct vg_mesh *m, const uint8_t *is_sheet)
+{
+  struct vg_edges e = VG_EDGES_INIT;
+  struct vg_error why = VG_ERROR_INIT;
+  int is_closed;
+
+  if (vg_edges_build(&e, m->n_point, m->n_tri, (const uint32_t(*)[3])m->tri,
+                     is_sheet, 1, &why) < 0)
+    return 0;
+  is_closed = e.n > 0;
+  for (size_t i = 0; i < e.n; i++)
+    is_closed &= e.start[i + 1] - e.start[i] == 2;
+  vg_edges_release(&e);
+  return is_closed;
+}
+
+/* The numbers of the marked patches, "" if they are too many for a message. */
+static void list_sheets(const struct vg_mesh *m, const uint8_t *on, char *list,
+                        size_t size)
+{
+  size_t n = 0;
+
+  *list = 0;
+  for (size_t i = 0; i < m->n_patch && n < size; i++)
+    if (on[i])
+      n += (size_t)snprintf(list + n, size - n, "%s%d", n ? "," : "",
+                            (int)m->patch[i].id);
+  if (n >= size) *list = 0;
+}
+
+int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
+                              size_t size)
+{
+  const struct vg_mesh *m = &b->surface;
+  const struct vg_surface_report *r = &b->check;
+  uint8_t *on = vg_calloc(m->n_patch, 1), *is_sheet = vg_calloc(m->n_tri, 1);
+  char list[48] = "";
+
+  for (size_t i = 0; on && i < r->n_defect; i++)
+    if (r->defect[i].kind == VG_DEFECT_OPEN_EDGE)
+      on[m->tri_patch[r->defect[i].face[0]]] = 1;
+  for (size_t t = 0; on && is_sheet && t < m->n_tri; t++)
+    is_sheet[t] = on[m->tri_patch[t]];
+  if (on && is_sheet && r->count[VG_DEFECT_OPEN_EDGE] &&
+      is_closed_without(m, is_sheet))
+    list_sheets(m, on, list, sizeof list);
+  free(on);
+  free(is_sheet);
+  if (*list)
+    snprintf(
+      text, size,
+      "; if fluid is on both sides of its open sheets, give --baffles %s",
+      list);
+  return *list != 0;
 }
 
 /* --- check -----------------------------------------------------------------
@@ -278,6 +387,17 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
             "%zu edges of inner surfaces were cut, because triangles with all "
             "corners on free edges would have the same points on both sides",
             r.n_cut);
+  if (r.n_sealed)
+    vg_note(b->notes,
+            "regions of the fluid that inner surfaces seal off from the rest: "
+            "%zu; all are meshed, and no fluid passes between them",
+            r.n_sealed);
+  if (r.n_near)
+    vg_note(b->notes,
+            "gaps next to inner surfaces that are narrower than 1e-3 of the "
+            "edges: %zu pairs of triangles, the narrowest %.3g wide near "
+            "(%g, %g, %g); cells in them are flat",
+            r.n_near, r.gap, r.at[0], r.at[1], r.at[2]);
 done:
   free(is_inner);
   free(back);

@@ -33,6 +33,13 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err);
 vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
                                 struct vg_error *err);
 
+/** Suggests `baffles` for a surface that is closed without the patches that
+ * have open edges, as the end of a message: "; if fluid is on both sides of its
+ * open sheets, give --baffles 7,8". Returns 0 for other surfaces; text is
+ * unchanged. */
+int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
+                              size_t size);
+
 /* run/input/remesh_boundary.c, surface_sizes.c, put_back.c
  * --------------------------- */
 
@@ -154,9 +161,10 @@ vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
 vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
                            struct vg_display *show, struct vg_error *err);
 
-/** Suggests a wrap for a surface that cannot be repaired, as the end of a
- * message: "; --wrap 0.2 puts a closed surface around it". The wrap is tried
- * first, which takes some seconds. text[120]: "" if a wrap does not help. */
+/** Suggests inner surfaces, or a wrap, for a surface that cannot be repaired,
+ * as the end of a message: "; --wrap 0.2 puts a closed surface around it". The
+ * wrap is tried first, which takes some seconds. text[120]: "" if a wrap does
+ * not help. */
 void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
                               char *text, size_t size);
 

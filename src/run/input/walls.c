@@ -229,15 +229,22 @@ done:
 
 static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
 {
+  const struct vg_mesh *m = &b->surface;
+  int is_sheet = 0;
   char list[600];
 
-  vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
+  for (size_t i = 0; i < m->n_patch; i++)
+    is_sheet |= m->patch[i].inner && vg_is_viscous(&m->patch[i]);
+  vg_patch_list_text(m, n_own(b), list, sizeof list);
   return vg_fail(
     err, VG_ERR_INPUT,
-    "%s: layers are requested, but no patch is known to be a wall; name the "
+    "%s: layers are requested, but no patch is known to be a wall%s; name the "
     "walls with --walls (such as --walls 3-12,wing*), set condition 4 in a "
     ".mapbc or the deck, or turn layers off with --layers no. Patches: %s",
-    b->read->files.stem, list);
+    b->read->files.stem,
+    is_sheet ? " on which layers grow, since inner surfaces (baffles) get none"
+             : "",
+    list);
 }
 
 static vg_status refuse_inner(const struct vg_mesh *m, const char *why,

@@ -81,6 +81,21 @@ exits 0
 vanguard check o_across/across.b8.ugrid
 says out "connected regions: 2"
 
+vanguard check across.stl --flow internal --baffles mid
+exits 0
+says out "inner surfaces seal off from the rest: 1;"
+
+# A sheet that misses a wall by rounding is refused; a narrow gap has a note.
+duct missed "fin 4 4  0.5 0.25 1e-13  0 0.5 0  0 0 0.5"
+vanguard check missed.stl --flow internal --baffles fin
+exits 1
+says err "patch 7 fin, an inner surface, nearly touches patch 1 w1: "
+says err "the narrowest one of 1e-13 near (0.5, "
+duct narrow "fin 4 4  0.5 0.25 1e-5  0 0.5 0  0 0 0.5"
+vanguard check narrow.stl --flow internal --baffles fin
+exits 0
+says out "gaps next to inner surfaces that are narrower than 1e-3 of the edges"
+
 # Same bytes with threads and in any decomposition.
 ways="advancing octree"
 vanguard --version --verbose
@@ -132,7 +147,56 @@ exits 1
 says err "cannot be combined with mesher"
 absent fin.b8.ugrid fin.cogsg
 
+# Defects that a sheet brings in are listed, written, and in the JSON report.
+duct inwall "twin 8 8  0 0 0  0 1 0  1 0 0"
+vanguard check inwall.stl --flow internal --baffles twin --defects inwall.vtu
+exits 1
+says out "no defects without the inner surfaces"
+says out "duplicate triangles: 128"
+[ -s inwall.vtu ] || fail "inwall.vtu is missing"
+vanguard check inwall.stl --flow internal --baffles twin --json
+exits 1
+says out '"kind": "duplicate triangle"'
+
+# Points of sheets are not unused; names of backs differ from other names.
+duct back "fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5" \
+  "fin_back 2 2  0.25 0.25 0.5  0 0.25 0  0 0 0.25"
+vanguard check back.stl --flow internal --baffles 'fin*'
+exits 0
+lacks out "unused"
+says out "patch 7 fin is an inner surface (baffles); its back is patch 9 fin_back_9"
+vanguard check both.stl --flow external --baffles fin,plate --repair no
+lacks out "unused"
+
+# Messages name settings that exist and remedies that apply.
+vanguard mesh fin.stl --flow internal --baffles fin --remesh-surface yes
+exits 1
+says err "cannot be combined with remesh_surface"
+vanguard mesh fin.stl --flow internal --baffles fin --surface-swap yes
+exits 1
+says err "cannot be combined with surface_swap"
+duct open "fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5"
+sed -i '/solid w6/,/endsolid w6/d' open.stl
+vanguard check open.stl --baffles fin
+exits 1
+lacks err "wrap"
+cp fin.stl viscous.stl
+printf 'sheet\n\npatches\nid bc\nfin 4\nw* 5\n' >viscous.deck
+vanguard mesh viscous.stl --flow internal --baffles fin --first 0.004
+exits 1
+says err "inner surfaces (baffles) get none"
+vanguard check o_fin/fin.b8.ugrid --baffles fin
+exits 0
+says out "baffles has no effect on a volume mesh"
+
 # Without the option the fin is a defect.
 vanguard mesh fin.stl --flow internal
 exits 1
 says err "16 defects"
+says err "both sides of its open sheets, give --baffles 7"
+vanguard check free.stl --flow internal
+exits 1
+says err "both sides of its open sheets, give --baffles 7"
+vanguard check open.stl
+exits 1
+lacks err "baffles"
