@@ -65,7 +65,7 @@ made() {
   digest "$work/files"
 }
 
-# pair A... -- B...: one run of two nodes.
+# pair A... -- B...: one run of two nodes, which must have the same helpers.
 pair() {
   local a=() mesh
   while [ "$1" != -- ]; do a+=("$1"); shift; done
@@ -73,8 +73,9 @@ pair() {
   mesh=(mesh -q -p "$project" "${options[@]}" --out "$work/files"
     --test-node-ranks 1)
   rm -rf "$work/files"
-  mpirun --oversubscribe --bind-to none -n 1 "${a[@]}" "${mesh[@]}" : \
-    -n 1 "$@" "${mesh[@]}" > "$work/log" 2>&1 < /dev/null ||
+  VANGUARD_HELPERS=$(dirname "$vanguard") mpirun --oversubscribe \
+    --bind-to none -n 1 "${a[@]}" "${mesh[@]}" : -n 1 "$@" "${mesh[@]}" \
+    > "$work/log" 2>&1 < /dev/null ||
     { echo "failed: $(grep -m 1 vanguard: "$work/log")"; return; }
   digest "$work/files"
 }
