@@ -58,6 +58,15 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q);
 void vg_report_volumes_bars(FILE *to, const struct vg_solver_quality *q);
 json_t *vg_report_volumes_json(const struct vg_solver_quality *q);
 
+/** report_volumes.c: n worst places as text, nothing if n is 0, and as JSON.
+ *
+ * @param of    what the numbers count; in JSON the name of their member
+ * @param unit  of the figures, with a space in front; "": none */
+void vg_report_places(FILE *to, size_t n, const struct vg_worst_place *worst,
+                      const char *title, const char *of, const char *unit);
+json_t *vg_report_places_json(size_t n, const struct vg_worst_place *worst,
+                              const char *of);
+
 /** report_dual.c: orthogonality of the median dual; worst places. */
 void vg_report_dual_text(FILE *to, const struct vg_dual_quality *q);
 void vg_report_dual_places(FILE *to, const struct vg_dual_quality *q);

@@ -51,16 +51,32 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q)
       to);
 }
 
-static void put_places(FILE *to, const struct vg_solver_quality *q, int list,
-                       const char *title, const char *of, const char *unit)
+void vg_report_places(FILE *to, size_t n, const struct vg_worst_place *worst,
+                      const char *title, const char *of, const char *unit)
 {
-  if (q->n_worst[list]) fprintf(to, "\n  %s\n", title);
-  for (size_t i = 0; i < q->n_worst[list]; i++) {
-    const struct vg_worst_place *w = &q->worst[list][i];
+  if (n) fprintf(to, "\n  %s\n", title);
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_worst_place *w = &worst[i];
 
     fprintf(to, "    %s %zu: %.4g%s at (%g, %g, %g)\n", of, w->cell + 1,
             w->value, unit, w->at[0], w->at[1], w->at[2]);
   }
+}
+
+json_t *vg_report_places_json(size_t n, const struct vg_worst_place *worst,
+                              const char *of)
+{
+  json_t *all = json_array();
+
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_worst_place *w = &worst[i];
+
+    json_array_append_new(all, json_pack("{s:o s:o s:o}", of,
+                                         vg_json_count(w->cell + 1), "value",
+                                         vg_json_real(w->value), "at",
+                                         vg_json_reals(w->at, 3)));
+  }
+  return all;
 }
 
 static void put_bars(FILE *to, const char *title, const size_t *hist, size_t n,
@@ -80,26 +96,13 @@ void vg_report_volumes_bars(FILE *to, const struct vg_solver_quality *q)
            2);
   put_bars(to, "Orthogonal quality of each cell", q->hist_quality, VG_HIST_UNIT,
            0.05, 2);
-  put_places(to, q, VG_WORST_ANGLE, "Worst non-orthogonality", "face of cell",
-             " degrees");
-  put_places(to, q, VG_WORST_SKEWNESS, "Worst skewness", "face of cell", "");
-  put_places(to, q, VG_WORST_QUALITY, "Worst orthogonal quality", "cell", "");
-}
-
-static json_t *places_json(const struct vg_solver_quality *q, int list)
-{
-  json_t *all = json_array();
-
-  for (size_t i = 0; i < q->n_worst[list]; i++) {
-    const struct vg_worst_place *w = &q->worst[list][i];
-    json_t *one = json_object();
-
-    json_object_set_new(one, "cell", json_integer((json_int_t)w->cell + 1));
-    json_object_set_new(one, "value", vg_json_real(w->value));
-    json_object_set_new(one, "at", vg_json_reals(w->at, 3));
-    json_array_append_new(all, one);
-  }
-  return all;
+  vg_report_places(to, q->n_worst[VG_WORST_ANGLE], q->worst[VG_WORST_ANGLE],
+                   "Worst non-orthogonality", "face of cell", " degrees");
+  vg_report_places(to, q->n_worst[VG_WORST_SKEWNESS],
+                   q->worst[VG_WORST_SKEWNESS], "Worst skewness",
+                   "face of cell", "");
+  vg_report_places(to, q->n_worst[VG_WORST_QUALITY], q->worst[VG_WORST_QUALITY],
+                   "Worst orthogonal quality", "cell", "");
 }
 
 json_t *vg_report_volumes_json(const struct vg_solver_quality *q)
@@ -141,9 +144,15 @@ json_t *vg_report_volumes_json(const struct vg_solver_quality *q)
   json_object_set_new(o, "histogram_orthogonal_quality",
                       vg_json_counts(q->hist_quality, VG_HIST_UNIT));
   json_object_set_new(o, "worst_non_orthogonality",
-                      places_json(q, VG_WORST_ANGLE));
-  json_object_set_new(o, "worst_skewness", places_json(q, VG_WORST_SKEWNESS));
+                      vg_report_places_json(q->n_worst[VG_WORST_ANGLE],
+                                            q->worst[VG_WORST_ANGLE], "cell"));
+  json_object_set_new(o, "worst_skewness",
+                      vg_report_places_json(q->n_worst[VG_WORST_SKEWNESS],
+                                            q->worst[VG_WORST_SKEWNESS],
+                                            "cell"));
   json_object_set_new(o, "worst_orthogonal_quality",
-                      places_json(q, VG_WORST_QUALITY));
+                      vg_report_places_json(q->n_worst[VG_WORST_QUALITY],
+                                            q->worst[VG_WORST_QUALITY],
+                                            "cell"));
   return o;
 }
