@@ -21,24 +21,22 @@ static int is_same_place(const double a[3], const double b[3])
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-static vg_status find_first(struct copies *c, struct vg_error *err)
+vg_status vg_mesh_first_points(const struct vg_mesh *m, const uint8_t *on,
+                               uint32_t *first, struct vg_error *err)
 {
-  const struct vg_mesh *m = c->m;
   struct vg_table table;
 
   if (vg_table_init(&table, m->n_point))
     return vg_fail_memory(err, "the table of points");
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3; k++) c->on[m->tri[t][k]] = 1;
   for (uint32_t p = 0; p < m->n_point; p++) {
     uint32_t *at;
 
-    if (!c->on[p]) continue;
+    first[p] = p;
+    if (!on[p]) continue;
     VG_TABLE_FIND(&table, at, vg_hash_point(m->point[p]),
                   is_same_place(m->point[*at], m->point[p]));
     if (*at == VG_TABLE_FREE) *at = p;
-    else c->n++;
-    c->first[p] = *at;
+    first[p] = *at;
   }
   vg_table_release(&table);
   return VG_OK;
@@ -94,7 +92,10 @@ vg_status vg_mesh_copies(const struct vg_mesh *m, uint64_t *n,
   c.first = vg_alloc(m->n_point, sizeof *c.first);
   c.on = vg_calloc(m->n_point, 1);
   if (!c.first || !c.on) VG_TRY(vg_fail_memory(err, "the table of points"));
-  VG_TRY(find_first(&c, err));
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3; k++) c.on[m->tri[t][k]] = 1;
+  VG_TRY(vg_mesh_first_points(m, c.on, c.first, err));
+  for (uint32_t p = 0; p < m->n_point; p++) c.n += c.first[p] != p;
   if (c.n) VG_TRY(mark_sides(&c, err));
   for (uint32_t p = 0; c.n && p < m->n_point; p++)
     count += c.on[p] == 2 && c.first[p] != p && c.on[c.first[p]] == 2;

@@ -14,6 +14,11 @@ static inline int vg_mesh_has_inner(const struct vg_mesh *m)
   return 0;
 }
 
+/** first[p]: for a point p with on[p], the first such point with the same
+ * coordinates; for others p. [n_point] each. VG_ERR_MEMORY. */
+vg_status vg_mesh_first_points(const struct vg_mesh *m, const uint8_t *on,
+                               uint32_t *first, struct vg_error *err);
+
 /** Count the points that have the coordinates of an earlier one, both being
  * corners of triangles that lie back to back on another triangle: the sides of
  * an inner surface, between which there is nothing. Other points that coincide

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
 #include "base/tri_key.h"
@@ -23,31 +22,20 @@ static int is_inner(const struct vg_mesh *m, size_t t, int32_t side)
 static vg_status find_copies(struct vg_doubled *d, struct vg_error *err)
 {
   const struct vg_mesh *m = d->boundary;
-  const double(*x)[3] = (const double(*)[3])m->point;
-  struct vg_table table = VG_TABLE_INIT;
   uint8_t *on = vg_calloc(m->n_point, 1);
   vg_status st = VG_OK;
 
   d->first = vg_alloc(m->n_point, sizeof *d->first);
   d->has_copies = vg_calloc(m->n_point, 1);
-  if (!on || !d->first || !d->has_copies || vg_table_init(&table, m->n_point))
+  if (!on || !d->first || !d->has_copies)
     VG_TRY(vg_fail_memory(err, "the inner surfaces"));
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 3 && !is_inner(m, t, VG_INNER_NOT); k++)
       on[m->tri[t][k]] = 1;
-  for (uint32_t p = 0; p < m->n_point; p++) {
-    uint32_t *at;
-
-    d->first[p] = p;
-    if (!on[p]) continue;
-    VG_TABLE_FIND(&table, at, vg_hash_point(x[p]),
-                  !memcmp(x[p], x[*at], sizeof *x));
-    if (*at == VG_TABLE_FREE) *at = p;
-    else d->has_copies[*at] = 1;
-    d->first[p] = *at;
-  }
+  VG_TRY(vg_mesh_first_points(m, on, d->first, err));
+  for (uint32_t p = 0; p < m->n_point; p++)
+    if (d->first[p] != p) d->has_copies[d->first[p]] = 1;
 done:
-  vg_table_release(&table);
   free(on);
   return st;
 }
