@@ -88,16 +88,17 @@ static void keep_memory(void)
 #endif
 }
 
-/* The child server starts before threads and MPI, while this process is small.
- * If it cannot start, processes for TetGen only cost more, so that is not an
- * error. */
+/* Every command may need a child: TetGen, METIS, CAD and CGNS files have their
+ * own. Their server starts before threads and MPI, while this process is small:
+ * a child forked next to a running thread may wait for a lock that this thread
+ * held. Without the server, children only cost more, so that is not an error. */
 static int run(const struct command *c, int argc, char **argv)
 {
   int status;
 
   if (c->meshes) vg_display_watch();
   keep_memory();
-  if (c->meshes) vg_child_server_start(NULL);
+  vg_child_server_start(NULL);
   status = c->run(argc, argv);
   vg_child_server_stop();
   return vg_cli_written(status);
