@@ -28,6 +28,8 @@ static const struct command {
     vg_cmd_partition, "vanguard partition", 1 },
   { "convert", "write a mesh or a surface in another format", vg_cmd_convert,
     "vanguard convert", 0 },
+  { "metric", "make the metric of the next mesh from a flow solution",
+    vg_cmd_metric, "vanguard metric", 0 },
   { "plan", "forecast cells, memory and time of a run", vg_cmd_plan,
     "vanguard plan", 0 },
   { "sweep", "mesh with various subdomain sizes, ranks and threads; compare",
@@ -91,7 +93,8 @@ static void keep_memory(void)
 /* Every command may need a child: TetGen, METIS, CAD and CGNS files have their
  * own. Their server starts before threads and MPI, while this process is small:
  * a child forked next to a running thread may wait for a lock that this thread
- * held. Without the server, children only cost more, so that is not an error. */
+ * held. Without the server, children only cost more, so that is not an error.
+ */
 static int run(const struct command *c, int argc, char **argv)
 {
   int status;

@@ -229,6 +229,18 @@ static void reads_text(void **state)
   accept(&b);
 }
 
+/* foamToVTK of OpenFOAM writes attributes in single quotes. */
+static void reads_single_quotes(void **state)
+{
+  struct bytes b = { .n = 0 };
+
+  (void)state;
+  put_text(&b, HEAD POINTS SIZES("0.5 .25 2\n1 0.125") "</Piece></VTKFile>");
+  for (size_t i = 0; i < b.n; i++)
+    if (b.data[i] == '"') b.data[i] = '\'';
+  accept(&b);
+}
+
 /* A file with a tetrahedron and a triangle. */
 struct metric_file {
   const char *metric, *nodes, *types;
@@ -421,6 +433,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_every_way),
     cmocka_unit_test(reads_text),
+    cmocka_unit_test(reads_single_quotes),
     cmocka_unit_test(reads_metrics_and_cells),
     cmocka_unit_test(refuses_bad_cells),
     cmocka_unit_test(reads_its_own_output),

@@ -112,15 +112,6 @@ static vg_status unknown_form(const char *word, struct vg_error *err)
                  word, vg_format_list());
 }
 
-/* Does the path name the input? Writing would destroy it. */
-static int is_input(const char *in, const char *path)
-{
-  struct stat a, b;
-
-  return !stat(in, &a) && !stat(path, &b) && a.st_dev == b.st_dev &&
-         a.st_ino == b.st_ino;
-}
-
 static int held_by(const char *suffix)
 {
   struct vg_ugrid_kind kind;
@@ -160,7 +151,7 @@ static vg_status choose(struct conversion *c, struct vg_error *err)
     return vg_fail(err, VG_ERR_USAGE,
                    "%s: not a regular file; give the name of a file",
                    c->a->out);
-  if (is_input(c->a->in, c->file))
+  if (vg_is_same_file(c->a->in, c->file))
     return vg_fail(err, VG_ERR_USAGE,
                    "%s: this is the input; give another name", c->file);
   c->what = held_by(c->suffix);

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "core/judge/quality_parts.h"
+#include "core/mesh/cell_edges.h"
 
 #define LEAST_ENTRIES ((size_t)1 << 21)
 #define N_PASS 4
@@ -42,18 +43,6 @@ struct edges {
   size_t n_group;
 };
 
-static const uint8_t tet_edge[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 },
-                                        { 1, 2 }, { 1, 3 }, { 2, 3 } };
-static const uint8_t pyr_edge[8][2] = {
-  { 0, 3 }, { 3, 4 }, { 4, 1 }, { 1, 0 }, { 0, 2 }, { 3, 2 }, { 4, 2 }, { 1, 2 }
-};
-static const uint8_t pri_edge[9][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 },
-                                        { 3, 4 }, { 4, 5 }, { 5, 3 },
-                                        { 0, 3 }, { 1, 4 }, { 2, 5 } };
-static const uint8_t hex_edge[12][2] = {
-  { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }, { 4, 5 }, { 5, 6 },
-  { 6, 7 }, { 7, 4 }, { 0, 4 }, { 1, 5 }, { 2, 6 }, { 3, 7 }
-};
 static const uint8_t tri_edge[3][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 } };
 static const uint8_t quad_edge[4][2] = {
   { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }
@@ -95,13 +84,13 @@ static void enter_cells(struct edges *e)
     size_t first = e->metrics->first;
 
     if (first < m->n_tet)
-      enter_all(e, m->tet[first], m->n_tet - first, 4, tet_edge, 6);
+      enter_all(e, m->tet[first], m->n_tet - first, 4, vg_tet_edge, 6);
     return;
   }
-  enter_all(e, (const uint32_t *)m->tet, m->n_tet, 4, tet_edge, 6);
-  enter_all(e, (const uint32_t *)m->pyr, m->n_pyr, 5, pyr_edge, 8);
-  enter_all(e, (const uint32_t *)m->pri, m->n_pri, 6, pri_edge, 9);
-  enter_all(e, (const uint32_t *)m->hex, m->n_hex, 8, hex_edge, 12);
+  enter_all(e, (const uint32_t *)m->tet, m->n_tet, 4, vg_tet_edge, 6);
+  enter_all(e, (const uint32_t *)m->pyr, m->n_pyr, 5, vg_pyr_edge, 8);
+  enter_all(e, (const uint32_t *)m->pri, m->n_pri, 6, vg_pri_edge, 9);
+  enter_all(e, (const uint32_t *)m->hex, m->n_hex, 8, vg_hex_edge, 12);
 }
 
 static void count_entries(struct edges *e)

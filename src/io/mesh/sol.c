@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/memory.h"
 #include "io/mesh/gmf.h"
@@ -173,5 +174,83 @@ vg_status vg_sol_read(const char *path, size_t *n, int *components,
 
   if (st >= 0) st = vg_sol_parse(&in, n, components, value, err);
   vg_input_release(&in);
+  return st;
+}
+
+/* --- writing -------------------------------------------------------------- */
+
+/* Our components in Medit's order xx, xy, yy, xz, yz, zz. */
+static const int medit_order[6] = { 0, 1, 3, 2, 4, 5 };
+
+static void put_values(struct vg_output *o, size_t n, const double (*metric)[6],
+                       int is_binary)
+{
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 6; k++) {
+      double v = metric[i][medit_order[k]];
+
+      if (is_binary) {
+        vg_output_f64(o, 1, &v);
+      } else {
+        vg_output_real(o, v);
+        vg_output_text(o, k < 5 ? " " : "\n");
+      }
+    }
+}
+
+static void put_text(struct vg_output *o, size_t n, const double (*metric)[6])
+{
+  vg_output_format(o,
+                   "MeshVersionFormatted 2\n\nDimension 3\n\n"
+                   "SolAtVertices\n%zu\n1 %d\n\n",
+                   n, TENSOR);
+  put_values(o, n, metric, 0);
+  vg_output_text(o, "\nEnd\n");
+}
+
+static void put_keyword(struct vg_output *o, int version, int32_t code,
+                        int64_t next)
+{
+  int32_t narrow = (int32_t)next;
+
+  vg_output_i32(o, 1, &code);
+  if (version == 2) vg_output_i32(o, 1, &narrow);
+  else vg_output_i64(o, 1, &next);
+}
+
+static void put_binary(struct vg_output *o, size_t n, const double (*metric)[6])
+{
+  const uint64_t data = 48 * (uint64_t)n;
+  const int version = data < INT32_MAX - 100 ? 2 : 3;
+  const int64_t keyword = version == 2 ? 8 : 12, after = 8 + keyword + 4;
+  const int32_t head[2] = { 1, version }, dimension = 3;
+  const int32_t count[3] = { (int32_t)n, 1, TENSOR };
+
+  vg_output_order(o, 0);
+  vg_output_i32(o, 2, head);
+  put_keyword(o, version, VG_GMF_DIMENSION, after);
+  vg_output_i32(o, 1, &dimension);
+  put_keyword(o, version, CODE_VERTICES,
+              after + keyword + (int64_t)sizeof count + (int64_t)data);
+  vg_output_i32(o, 3, count);
+  put_values(o, n, metric, 1);
+  put_keyword(o, version, VG_GMF_END, 0);
+}
+
+vg_status vg_sol_write(const char *path, size_t n, const double (*metric)[6],
+                       struct vg_error *err)
+{
+  const size_t len = strlen(path);
+  struct vg_output o = VG_OUTPUT_INIT;
+  vg_status st;
+
+  assert(metric && n < INT32_MAX);
+  VG_TRY(vg_output_open(path, &o, err));
+  if (len > 5 && !strcasecmp(path + len - 5, ".solb"))
+    put_binary(&o, n, metric);
+  else put_text(&o, n, metric);
+  st = vg_output_commit(&o, err);
+done:
+  vg_output_release(&o);
   return st;
 }

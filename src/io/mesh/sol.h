@@ -20,4 +20,11 @@ vg_status vg_sol_parse(struct vg_input *in, size_t *n, int *components,
 vg_status vg_sol_read(const char *path, size_t *n, int *components,
                       double **value, struct vg_error *err);
 
+/** Write metrics at vertices: text or, if the path ends in ".solb",
+ * little-endian binary of version 2 (3 above 2 GB).
+ *
+ * @param metric  [n] as in core/geometry/tensor.h */
+vg_status vg_sol_write(const char *path, size_t n, const double (*metric)[6],
+                       struct vg_error *err);
+
 #endif

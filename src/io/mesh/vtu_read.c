@@ -58,18 +58,20 @@ static const char *find_tag(const char *from, const char *end, const char *name)
 }
 
 /* Copy an attribute of the tag at `tag` to out; returns 0 if it is absent or
- * too long. */
+ * too long. XML allows both kinds of quotes; foamToVTK writes single ones. */
 static int attribute(const char *tag, const char *end, const char *name,
                      char *out, size_t size)
 {
   const char *stop = find(tag, end, ">");
   char word[40];
 
-  snprintf(word, sizeof word, "%s=\"", name);
+  snprintf(word, sizeof word, "%s=", name);
   for (const char *at = tag; stop && (at = find(at, stop, word)); at++) {
-    const char *from = at + strlen(word), *to = find(from, stop, "\"");
+    const char *from = at + strlen(word) + 1, *to;
 
-    if (!isspace((unsigned char)at[-1])) continue;
+    if (!isspace((unsigned char)at[-1]) || from >= stop) continue;
+    if (from[-1] != '"' && from[-1] != '\'') continue;
+    to = memchr(from, from[-1], (size_t)(stop - from));
     if (!to || (size_t)(to - from) >= size) return 0;
     memcpy(out, from, (size_t)(to - from));
     out[to - from] = 0;
@@ -664,6 +666,32 @@ int vg_vtu_has_array(struct vg_input *in, const char *name)
   const char *end;
 
   return read_head(&f, &err) >= 0 && seek_array(&f, "PointData", name, &end);
+}
+
+void vg_vtu_array_names(struct vg_input *in, const char *section, char *out,
+                        size_t size)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct file f = { .in = in };
+  const char *end, *at;
+  char name[256];
+  size_t n = 0;
+
+  assert(size > 8);
+  *out = 0;
+  if (read_head(&f, &err) < 0) return;
+  for (at = seek_array(&f, section, NULL, &end); at;
+       at = find_tag(at + 1, end, "DataArray")) {
+    size_t len;
+
+    if (!attribute(at, end, "Name", name, sizeof name)) continue;
+    len = strlen(name);
+    if (n + len + 6 > size) {
+      snprintf(out + n, size - n, "%s...", n ? ", " : "");
+      return;
+    }
+    n += (size_t)snprintf(out + n, size - n, "%s%s", n ? ", " : "", name);
+  }
 }
 
 vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,

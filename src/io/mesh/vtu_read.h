@@ -12,6 +12,12 @@
 /** Is there a point array `name`? 0 for a damaged file, too. */
 int vg_vtu_has_array(struct vg_input *in, const char *name);
 
+/** Write the names of the arrays of a section, "PointData" or "CellData", to
+ * out, separated by ", "; the list ends in "..." if it is too long. A section
+ * without arrays gives an empty list. */
+void vg_vtu_array_names(struct vg_input *in, const char *section, char *out,
+                        size_t size);
+
 /** Read the points, the cells and faces of first order (tetrahedra, pyramids,
  * wedges, hexahedra, triangles, quadrilaterals; all others are skipped) and the
  * point array `name`.

@@ -82,8 +82,7 @@ static vg_status make_samples(const struct vg_mesh *m, const double *h,
   return s->refused ? vg_fail_memory(err, "the sizes of a mesh") : VG_OK;
 }
 
-/* The mesh next to STEM.sol: the only file of the stem that can be read. */
-static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
+vg_status vg_sizes_find_mesh(const char *path, char **out, struct vg_error *err)
 {
   const char *dot = strrchr(path, '.'), *suffix;
   char *found = NULL, *name;
@@ -96,7 +95,7 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
       free(name);
     } else if (found) {
       st = vg_fail(err, VG_ERR_INPUT,
-                   "%s: both %s and %s could be the mesh of these sizes; keep "
+                   "%s: both %s and %s could be the mesh of these values; keep "
                    "only one of them next to the file",
                    path, found, name);
       free(name);
@@ -106,7 +105,7 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
   }
   if (st >= 0 && !found)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: the sizes belong to the points of a mesh, but there is "
+                 "%s: the values belong to the points of a mesh, but there is "
                  "no %.*s.mesh, .meshb, .b8.ugrid, ... in the same folder",
                  path, (int)(dot - path), path);
   if (st < 0) free(found);
@@ -195,7 +194,7 @@ static vg_status read_values(const char *path, struct values *v,
                    ".vtu",
                    path);
   VG_TRY(vg_sol_read(path, &n, &v->components, &v->value, err));
-  VG_TRY(find_mesh(path, &mesh, err));
+  VG_TRY(vg_sizes_find_mesh(path, &mesh, err));
   st = vg_format_read(mesh, &v->m, &why);
   if (st < 0)
     vg_fail(err, st, "%s: the mesh of these sizes cannot be read: %s", path,

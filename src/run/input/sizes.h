@@ -16,6 +16,11 @@
  * points, a value that is not a size, or an existing map. */
 vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err);
 
+/** The mesh next to STEM.sol: the only file of the stem that can be read.
+ * *out: to be freed. VG_ERR_INPUT: no such file, or several. */
+vg_status vg_sizes_find_mesh(const char *path, char **out,
+                             struct vg_error *err);
+
 /** Adds a note if some of the metrics, which an earlier note mentions, have an
  * aspect above aspect_max. */
 void vg_note_aspects(struct vg_notes *notes, size_t n,

@@ -102,11 +102,11 @@ static int is_case(const char *item)
   return vg_foam_word(item, &options);
 }
 
-static int same_file(const char *a, const char *b)
+int vg_is_same_file(const char *a, const char *b)
 {
   struct stat x, y;
 
-  if (!*a || !*b || stat(a, &x) || stat(b, &y)) return 0;
+  if (!a || !b || !*a || !*b || stat(a, &x) || stat(b, &y)) return 0;
   return x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
@@ -122,7 +122,7 @@ static const char *hits_input(const struct vg_outputs *o,
   const char *hit = NULL;
 
   for (size_t i = 0; path && i < sizeof input / sizeof *input; i++)
-    if (same_file(path, input[i])) hit = input[i];
+    if (vg_is_same_file(path, input[i])) hit = input[i];
   free(path);
   return hit;
 }
@@ -169,7 +169,7 @@ static vg_status refuse_second(const struct vg_outputs *o,
            : strndup(f->stem, slash == f->stem ? 1 : (size_t)(slash - f->stem));
   if (!path || !folder) st = vg_fail_memory(err, "the output paths");
   else if (*input && !*f->front && vg_format_is_tessellation(path) &&
-           !strcmp(name, o->name) && same_file(folder, o->dir))
+           !strcmp(name, o->name) && vg_is_same_file(folder, o->dir))
     st = vg_fail(err, VG_ERR_INPUT,
                  "writing %s next to the input %s would make the surface of "
                  "the project %s ambiguous; use --out DIR or another --write "

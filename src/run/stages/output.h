@@ -41,6 +41,10 @@ struct vg_outputs {
 
 void vg_outputs_release(struct vg_outputs *o);
 
+/** Do both paths name the same existing file? Then writing one destroys the
+ * other. NULL and "" name none. */
+int vg_is_same_file(const char *a, const char *b);
+
 /** Determines where files are written, and checks that this is possible.
  *
  * @param stem  determines the names of the files

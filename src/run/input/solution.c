@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "run/input/solution.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/mesh/csv.h"
+#include "io/mesh/format.h"
+#include "io/mesh/sol.h"
+#include "io/mesh/vtu_read.h"
+#include "run/common/text.h"
+#include "run/input/sizes.h"
+
+/* Coordinates of a table that agree with those of the mesh differ by less,
+ * relative to the size of the mesh: files have at least six digits. */
+#define SAME_PLACE 1e-5
+
+enum { NAMES = 1000 };
+
+void vg_solution_release(struct vg_solution *s)
+{
+  for (size_t i = 0; i < s->n_field; i++) {
+    free(s->field[i].name);
+    free(s->field[i].value);
+  }
+  free(s->mesh);
+  vg_mesh_release(&s->m);
+  *s = (struct vg_solution)VG_SOLUTION_INIT;
+}
+
+/* Take over the values of a field. */
+static vg_status add_field(const char *path, struct vg_solution *s,
+                           const char *name, double *value,
+                           struct vg_error *err)
+{
+  struct vg_solution_field *f = &s->field[s->n_field];
+
+  assert(s->n_field < VG_SOLUTION_FIELDS);
+  f->value = value;
+  f->name = strdup(name);
+  s->n_field++;
+  if (!f->name) return vg_fail_memory(err, "the name of a field");
+  for (size_t p = 0; p < s->m.n_point; p++)
+    if (!isfinite(value[p]))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: the value of '%s' at point %zu, (%g %g %g), is not "
+                     "finite; the solution must be complete",
+                     path, name, p + 1, s->m.point[p][0], s->m.point[p][1],
+                     s->m.point[p][2]);
+  return VG_OK;
+}
+
+/* --- .vtu ----------------------------------------------------------------- */
+
+/* Replace the vectors by a component, counted from 1, or by their lengths. */
+static void reduce(double *value, size_t n, int components, int which)
+{
+  for (size_t i = 0; i < n; i++) {
+    const double *v = value + (size_t)components * i;
+    double sum = 0;
+
+    for (int k = 0; k < components; k++) sum += v[k] * v[k];
+    value[i] = which ? v[which - 1] : sqrt(sum);
+  }
+}
+
+/* Part of NAME:PART: 0 for "mag", the number of a component, -1: none. */
+static int part_of(const char *name, size_t *len)
+{
+  const char *colon = strrchr(name, ':');
+
+  *len = colon ? (size_t)(colon - name) : strlen(name);
+  if (!colon) return -1;
+  if (!strcmp(colon, ":mag")) return 0;
+  if (colon[1] >= '1' && colon[1] <= '9' && !colon[2]) return colon[1] - '0';
+  *len = strlen(name);
+  return -1;
+}
+
+static vg_status refuse_name(const char *path, const char *name,
+                             struct vg_input *in, struct vg_error *err)
+{
+  char point[NAMES], cell[NAMES];
+  const char *found;
+
+  vg_vtu_array_names(in, "PointData", point, sizeof point);
+  vg_vtu_array_names(in, "CellData", cell, sizeof cell);
+  if (*name && (found = strstr(cell, name)) != NULL &&
+      (found == cell || found[-1] == ' ') &&
+      strchr(",", found[strlen(name)]) != NULL)
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: '%s' has values in the cells, but values at the points "
+      "are needed: write point data, as foamToVTK does, or convert "
+      "it with ParaView's filter Cell Data to Point Data",
+      path, name);
+  return vg_fail(err, VG_ERR_INPUT, "%s: %s%s%s; its point arrays are: %s",
+                 path,
+                 *name ? "there is no point array '"
+                       : "give a field by --field",
+                 name, *name ? "'" : "", *point ? point : "none");
+}
+
+static vg_status read_array(const char *path, struct vg_input *in,
+                            const char *name, struct vg_solution *s,
+                            struct vg_error *err)
+{
+  size_t len;
+  int part = vg_vtu_has_array(in, name) ? -1 : part_of(name, &len), n = 0;
+  char *array = part < 0 ? strdup(name) : strndup(name, len);
+  struct vg_mesh m = VG_MESH_INIT;
+  double *value = NULL;
+  vg_status st = VG_OK;
+
+  if (!array) return vg_fail_memory(err, "the name of a field");
+  if (!vg_vtu_has_array(in, array)) st = refuse_name(path, name, in, err);
+  else st = vg_vtu_values_parse(in, array, &m, &n, &value, err);
+  free(array);
+  if (st < 0) return st;
+  if (s->n_field) vg_mesh_release(&m);
+  else vg_mesh_move(&s->m, &m);
+  if ((part < 0 && n > 1) || part > n) {
+    free(value);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: '%s' has %d components; give one of them as NAME:1 to "
+                   "NAME:%d, or the length as NAME:mag",
+                   path, name, n, n);
+  }
+  if (part >= 0) reduce(value, s->m.n_point, n, part);
+  return add_field(path, s, name, value, err);
+}
+
+/* --- .csv ----------------------------------------------------------------- */
+
+static vg_status read_column(const char *path, struct vg_input *in,
+                             const char *name, struct vg_solution *s,
+                             struct vg_error *err)
+{
+  struct vg_error inner = VG_ERROR_INIT;
+  char names[NAMES];
+  double *value = NULL;
+  size_t n = 0;
+  vg_status st = vg_csv_column(in, name, &n, &value, &inner);
+
+  if (st == VG_ERR_FORMAT && strstr(inner.text, "column named")) {
+    vg_csv_names(in, names, sizeof names);
+    return vg_fail(err, st, "%s; its columns are: %s", inner.text, names);
+  }
+  if (st < 0) return vg_fail(err, st, "%s", inner.text);
+  if (n == s->m.n_point) return add_field(path, s, name, value, err);
+  free(value);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s has %zu lines of values, but %s has %zu points", path, n,
+                 s->mesh, s->m.n_point);
+}
+
+/* Points of the table, if it has coordinates, must be those of the mesh. */
+static vg_status compare_points(const char *path, struct vg_input *in,
+                                const struct vg_solution *s,
+                                struct vg_error *err)
+{
+  static const char *const axis[3] = { "x", "y", "z" };
+  double lo[3], hi[3], size = 0;
+  vg_status st = VG_OK;
+
+  vg_mesh_bounds(&s->m, lo, hi);
+  for (int k = 0; k < 3; k++) size = fmax(size, hi[k] - lo[k]);
+  for (int k = 0; k < 3 && st >= 0; k++) {
+    struct vg_error none = VG_ERROR_INIT;
+    double *x = NULL;
+    size_t n = 0;
+
+    st = vg_csv_column(in, axis[k], &n, &x, &none);
+    if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "coordinates");
+    st = VG_OK; /* a table need not have coordinates */
+    for (size_t p = 0; x && p < n && p < s->m.n_point && st >= 0; p++)
+      if (!(fabs(x[p] - s->m.point[p][k]) <= SAME_PLACE * size))
+        st = vg_fail(err, VG_ERR_INPUT,
+                     "%s: the %s of point %zu is %g, but %g in %s: the values "
+                     "belong to another mesh, or the points are in another "
+                     "order",
+                     path, axis[k], p + 1, x[p], s->m.point[p][k], s->mesh);
+    free(x);
+  }
+  return st;
+}
+
+static vg_status read_mesh(const char *path, struct vg_solution *s,
+                           struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  vg_status st = vg_format_read(s->mesh, &s->m, &why);
+  int is_known;
+
+  if (st >= 0)
+    st = vg_format_layer_tets(s->mesh, &is_known, &s->n_layer_tet, &why);
+  if (st < 0)
+    return vg_fail(err, st, "%s: the mesh of this solution cannot be read: %s",
+                   path, why.text);
+  if (!is_known || s->n_layer_tet > s->m.n_tet) s->n_layer_tet = 0;
+  return VG_OK;
+}
+
+/* --- fields --------------------------------------------------------------- */
+
+typedef vg_status read_field(const char *path, struct vg_input *in,
+                             const char *name, struct vg_solution *s,
+                             struct vg_error *err);
+
+static vg_status read_fields(const char *path, struct vg_input *in,
+                             const char *names, read_field *read,
+                             struct vg_solution *s, struct vg_error *err)
+{
+  char *list = strdup(names ? names : ""), *rest = list, *name;
+  vg_status st = VG_OK;
+
+  if (!list) return vg_fail_memory(err, "the names of fields");
+  if (!*list) st = read(path, in, "", s, err);
+  while (st >= 0 && *list && (name = strsep(&rest, ","))) {
+    if (s->n_field == VG_SOLUTION_FIELDS)
+      st = vg_fail(err, VG_ERR_INPUT, "--field: more than %d fields",
+                   VG_SOLUTION_FIELDS);
+    else if (!*name)
+      st = vg_fail(err, VG_ERR_INPUT, "--field: an empty name in '%s'", names);
+    else st = read(path, in, name, s, err);
+  }
+  free(list);
+  return st;
+}
+
+static vg_status read_sol(const char *path, const char *names,
+                          struct vg_solution *s, struct vg_error *err)
+{
+  int components = 0;
+  double *value = NULL;
+  size_t n = 0;
+  vg_status st;
+
+  if (names && *names)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the fields of a .sol have no names; omit --field",
+                   path);
+  VG_TRY(vg_sizes_find_mesh(path, &s->mesh, err));
+  VG_TRY(vg_sol_read(path, &n, &components, &value, err));
+  VG_TRY(read_mesh(path, s, err));
+  if (components != 1)
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s has a tensor at each point; a solution is a scalar (kind "
+                 "1)",
+                 path);
+  else if (n != s->m.n_point)
+    st = vg_fail(err, VG_ERR_INPUT, "%s has %zu values, but %s has %zu points",
+                 path, n, s->mesh, s->m.n_point);
+  if (st < 0) goto done;
+  st = add_field(path, s, "solution", value, err);
+  value = NULL;
+done:
+  free(value);
+  return st;
+}
+
+static vg_status read_csv(const char *path, const char *names, const char *mesh,
+                          struct vg_solution *s, struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  char list[NAMES];
+  vg_status st;
+
+  if (!mesh)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s has no cells: give the mesh of its points by --mesh",
+                   path);
+  s->mesh = strdup(mesh);
+  if (!s->mesh) return vg_fail_memory(err, "a file name");
+  VG_TRY(vg_input_open(path, &in, err));
+  if (!names || !*names) {
+    vg_csv_names(&in, list, sizeof list);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: give a field by --field; its columns are: %s", path,
+                 list);
+    goto done;
+  }
+  VG_TRY(read_mesh(path, s, err));
+  VG_TRY(read_fields(path, &in, names, read_column, s, err));
+  st = compare_points(path, &in, s, err);
+done:
+  vg_input_release(&in);
+  return st;
+}
+
+vg_status vg_solution_read(const char *path, const char *names,
+                           const char *mesh, struct vg_solution *s,
+                           struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  vg_status st;
+
+  if (vg_text_ends(path, ".csv")) return read_csv(path, names, mesh, s, err);
+  if (mesh)
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "--mesh is for a .csv; the mesh of %s is in the file or next "
+      "to it",
+      path);
+  if (vg_text_ends(path, ".sol") || vg_text_ends(path, ".solb"))
+    return read_sol(path, names, s, err);
+  if (!vg_text_ends(path, ".vtu"))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: a solution is read from VTK's .vtu, Medit's .sol or "
+                   ".solb next to a mesh, or a .csv with --mesh",
+                   path);
+  VG_TRY(vg_input_open(path, &in, err));
+  st = read_fields(path, &in, names, read_array, s, err);
+done:
+  vg_input_release(&in);
+  return st;
+}

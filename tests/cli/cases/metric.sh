@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# vanguard metric: the metric of the next mesh from a solution. A front is
+# resolved in a few cycles; every format of solutions gives the same metric;
+# invalid solutions are refused.
+vanguard demo box --cells 20000 --out .
+exits 0
+vanguard mesh -q -p box --write mesh,vtu --out 1
+exits 0
+
+# front MESH: a value at each vertex of a .mesh, a front of width 0.05 that is
+# the surface of a sphere.
+front() {
+  awk '
+    at && n < count {
+      t = (sqrt(($1 + .2) ^ 2 + ($2 + .2) ^ 2 + ($3 + .2) ^ 2) - .8) / .05
+      e = exp(-2 * (t < 0 ? -t : t)); f = (1 - e) / (1 + e)
+      printf "%s %s %s %.12g\n", $1, $2, $3, t < 0 ? -f : f
+      n++
+    }
+    is_count { count = $1; at = 1; is_count = 0 }
+    $1 == "Vertices" { is_count = 1 }' "$1"
+}
+sol() {
+  front "$1.mesh" >values
+  {
+    echo "MeshVersionFormatted 2 Dimension 3 SolAtVertices"
+    echo "$(wc -l <values) 1 1"
+    awk '{ print $4 }' values
+    echo End
+  } >"$1.sol"
+}
+
+# Three cycles: the mesh has the requested size, and edges of a tenth of the
+# first ones at the front.
+cat >adapt.deck <<'END'
+Adaptation
+growth  surface_sizes  remesh_surface
+2       no             yes
+END
+for k in 1 2 3; do
+  sol "$k/box"
+  vanguard metric -q "$k/box.sol" --cells 20000 --out "$k.solb"
+  exits 0
+  says out "  expected cells   20,0"
+  exists "$k.solb" "$k.meshb"
+  vanguard mesh -q -p box --deck adapt.deck --sizes "$k.solb" --write mesh \
+    --out "$((k + 1))"
+  exits 0
+done
+cells=$(sed -n 's/.* cells expected, \([0-9,]*\) generated/\1/p' out | tr -d ,)
+[ "$cells" -gt 16000 ] && [ "$cells" -lt 24000 ] || fail "$cells cells"
+
+# The same metric from a .sol, a .csv and a .vtu, and by text and binary files.
+vanguard metric 1/box.sol --cells 5000 --out a.sol --json
+exits 0
+says out '"layer_cells": 0'
+front 1/box.mesh >values
+{
+  echo '"PointID","x","y","z","Ma", p'
+  awk '{ print NR - 1 ", " $1 "," $2 "," $3 "," $4 "," NR }' values
+} >s.csv
+vanguard metric s.csv --field Ma --mesh 1/box.mesh --cells 5000 --out b.sol
+exits 0
+same a.sol b.sol
+same a.mesh b.mesh
+{ # the points and cells of the .vtu, and two arrays in text
+  n=$(wc -l <values)
+  echo '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">'
+  echo "<UnstructuredGrid><Piece NumberOfPoints=\"$n\" NumberOfCells=\"CELLS\">"
+  echo '<PointData><DataArray type="Float64" Name="U" NumberOfComponents="3" format="ascii">'
+  awk '{ print 3 * $4, $4, 0 }' values
+  echo '</DataArray></PointData>'
+  echo '<CellData><DataArray type="Float64" Name="p" format="ascii">'
+  echo '</DataArray></CellData>'
+  echo '<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">'
+  awk '{ print $1, $2, $3 }' values
+  echo '</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">'
+  awk 'at && n < count { print $1 - 1, $2 - 1, $3 - 1, $4 - 1; n++ }
+    is_count { count = $1; at = 1; is_count = 0 }
+    $1 == "Tetrahedra" { is_count = 1 }' 1/box.mesh | tee tets
+  echo '</DataArray><DataArray type="Int64" Name="offsets" format="ascii">'
+  awk '{ print 4 * NR }' tets
+  echo '</DataArray><DataArray type="UInt8" Name="types" format="ascii">'
+  awk '{ print 10 }' tets
+  echo '</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>'
+} | sed "s/CELLS/$(awk 'is { print; exit } $1 == "Tetrahedra" { is = 1 }' \
+  1/box.mesh)/" >s.vtu
+vanguard metric s.vtu --field U:2 --cells 5000 --out c.sol
+exits 0
+same a.sol c.sol
+vanguard metric s.vtu --field U:2 --cells 5000
+exits 0
+exists s.metric.vtu
+vanguard metric s.vtu --field U:2,U:mag,U:1 --cells 5000 --norm max --json
+exits 0
+says out '"U:mag",'
+vanguard mesh -q -p box --deck adapt.deck --sizes a.sol --write mesh --out d
+exits 0
+vanguard mesh -q -p box --deck adapt.deck --sizes s.metric.vtu --write mesh \
+  --out e
+exits 0
+
+# Bounds that leave no choice are noted.
+vanguard metric s.csv --field Ma --mesh 1/box.mesh --cells 100000 --h-min 0.1 \
+  --out f.vtu
+exits 0
+says out "times the requested number of cells"
+
+# refused TEXT ARGS...
+refused() {
+  text=$1
+  shift
+  vanguard metric "$@"
+  [ "$status" != 0 ] || fail "accepted: $*"
+  says err "$text"
+  absent z.vtu z.solb z.meshb
+}
+refused "its point arrays are: U" s.vtu --cells 10 --field q --out z.vtu
+refused "'p' has values in the cells" s.vtu --cells 10 --field p --out z.vtu
+refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U --out z.vtu
+refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U:4 --out z.vtu
+refused "give a field by --field" s.vtu --cells 10 --out z.vtu
+refused "an empty name" s.vtu --cells 10 --field U:1,,U:2 --out z.vtu
+refused "'U:3' gives no metric: it is linear" s.vtu --cells 10 --field U:3 \
+  --out z.vtu
+refused "would overwrite" s.vtu --cells 10 --field U:1 --out ./s.vtu
+refused "would overwrite" 1/box.sol --cells 10 --out 1/box.sol
+refused "its columns are: PointID, x, y, z, Ma, p" s.csv --cells 10 --field q \
+  --mesh 1/box.mesh --out z.vtu
+refused "by --mesh" s.csv --cells 10 --field Ma --out z.vtu
+refused "points" s.csv --cells 10 --field Ma --mesh 2/box.mesh --out z.vtu
+awk -F, 'NR == 5 { $3 = 7; OFS = "," } { print }' s.csv | tr ' ' , |
+  sed 's/,,*/,/g' >moved.csv
+refused "the y of point 4 is 7" moved.csv --cells 10 --field Ma \
+  --mesh 1/box.mesh --out z.vtu
+sed '7s/,[^,]*$//' s.csv >short.csv
+refused "line 7: 5 columns" short.csv --cells 10 --field Ma \
+  --mesh 1/box.mesh --out z.vtu
+refused "omit --field" 1/box.sol --cells 10 --field p --out z.vtu
+refused "a solution is read from" box.lb8.ugrid --cells 10 --out z.vtu
+sed 's/Float64" Name="U"/Float64" Name="V"/' s.vtu >renamed.vtu
+refused "its point arrays are: V" renamed.vtu --cells 10 --field U:1 \
+  --out z.vtu
+vanguard metric s.vtu --field U:1
+exits 2
+vanguard metric s.vtu --field U:1 --cells -5
+exits 2
+vanguard metric s.vtu --field U:1 --cells 10 --h-min 2 --h-max 1
+exits 2
