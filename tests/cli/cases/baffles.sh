@@ -135,6 +135,17 @@ done
 vanguard check tall/tall.b8.ugrid
 exits 0
 
+# A sheet without layers ends in a side of the duct in which columns of the
+# floor slide: the side is remeshed around it, and the floor has all layers.
+duct side "fin 4 4  0.5 0 0.25  0 0.5 0  0 0 0.5"
+vanguard mesh side.stl --flow internal --baffles fin --walls w1 --first 0.004 \
+  --hmax 0.12 --write b8.ugrid --out side
+exits 0
+[ "$(full out w1)" = 100.00 ] || fail "layers next to a slit"
+vanguard check side/side.b8.ugrid
+exits 0
+says out "valid"
+
 # The back is as the front, unless a list or a row of the table names it.
 cat >tall.deck <<'END'
 sheet
