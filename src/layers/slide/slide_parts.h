@@ -45,7 +45,7 @@ struct vg_slide_work {
   uint32_t *local;   /* [surface points, tops, points of curves] scratch; all
                         VG_NO_INDEX between uses. */
   uint32_t *copy_of; /* [m->n_point] first copy of each point of an inner
-                        surface; NULL: there is none. */
+                        surface; NULL: no point has a copy. */
   /* Half-edges 3 * triangle + corner of slide patches, sorted by first
    * point. */
   uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]]. */
