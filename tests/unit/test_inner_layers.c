@@ -66,7 +66,7 @@ static void made_release(struct made *s)
 static void check_front(const struct made *s, uint64_t n_copy)
 {
   struct vg_mesh front = vg_front_mesh(&s->l.front, &s->m);
-  struct vg_doubled d = { NULL };
+  struct vg_doubled d = { .first = NULL };
   double volume;
 
   assert_int_equal(vg_mesh_open_edges(&front), 0);
