@@ -586,9 +586,9 @@ vanguard_wall_points(vanguard_job *job, struct vanguard_wall_points *out);
 
 /** Name of a cause: 0 "none", 1 "size" (the layers end where they are as thick
  * as the local edge length, as intended), "proximity", "corner", "visibility",
- * "cell", "collision", "slide", "neighbour", "gradation". NULL when `cause` is
- * past the last one. Static string; docs/reference/layers.md explains the
- * causes. */
+ * "cell", "collision", "slide", "neighbour", "gradation", "inner". NULL when
+ * `cause` is past the last one. Static string; docs/reference/layers.md
+ * explains the causes. */
 VANGUARD_API const char *vanguard_cause(int32_t cause);
 
 /** Write the mesh as STEM.form for each form in a comma-separated list. The

@@ -3,51 +3,13 @@
  * filled, with the same mesh in any decomposition. */
 #define _GNU_SOURCE
 #include "advance_support.h"
+#include "inner_shapes.h"
 
 #include "core/mesh/copies.h"
-#include "core/sides/inner.h"
-#include "core/surface/surface_check.h"
+#include "core/mesh/edges.h"
 #include "partition/discrete/discrete.h"
 #include "partition/graph/graph.h"
 #include "partition/octree/octree.h"
-
-/* Doubles patch `front`, the last one; its back is added. */
-static vg_status put_back(struct vg_mesh *m, struct vg_inner_report *r,
-                          struct vg_error *err)
-{
-  uint8_t is_inner[9] = { 0 };
-  uint32_t back[9] = { 0 };
-  const size_t front = m->n_patch - 1;
-
-  assert_int_equal(vg_surface_merge_points(m, err), VG_OK);
-  is_inner[front] = 1;
-  back[front] = (uint32_t)vg_mesh_add_patch(m, 50, "sheet_back");
-  m->patch[front].inner = VG_INNER_FRONT;
-  m->patch[front + 1].inner = VG_INNER_BACK;
-  return vg_inner_double(m, is_inner, back, r, err);
-}
-
-/* A parallelogram of n x n quadrilaterals from o along u and v. */
-static void add_sheet(struct vg_mesh *m, const double o[3], const double u[3],
-                      const double v[3], int n)
-{
-  const size_t patch = vg_mesh_add_patch(m, 40, "sheet");
-  const uint32_t first = (uint32_t)m->n_point, row = (uint32_t)n + 1;
-
-  for (uint32_t k = 0; k < row * row; k++) {
-    const double s = (double)(k % row) / n, t = (double)(k / row) / n;
-
-    shape_point(m, o[0] + s * u[0] + t * v[0], o[1] + s * u[1] + t * v[1],
-                o[2] + s * u[2] + t * v[2]);
-  }
-  for (uint32_t k = 0; k < row * row - row; k++) {
-    const uint32_t a = first + k;
-
-    if (k % row == row - 1) continue;
-    shape_tri(m, a, a + 1, a + row + 1, patch);
-    shape_tri(m, a, a + row + 1, a + row, patch);
-  }
-}
 
 static const double x[3] = { 1, 0, 0 }, y[3] = { 0, 1, 0 };
 
@@ -132,6 +94,34 @@ static void a_sheet_on_a_wall(void **state)
   assert_int_equal(make(&m, o, x, v, 2, &r, NULL), VG_OK);
   assert_int_equal(r.n_point, r.n_cut + 2);
   expect(&m, &r, 8 + 2 * r.n_cut, r.n_cut, r.n_point);
+  vg_mesh_release(&m);
+}
+
+/* Half-edges that occur more than once. */
+static size_t n_repeated(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t g = 0; g < 3 * m->n_tri; g++)
+    for (size_t h = 0; h < g; h++)
+      n += vg_half_from((const uint32_t(*)[3])m->tri, (uint32_t)g) ==
+             vg_half_from((const uint32_t(*)[3])m->tri, (uint32_t)h) &&
+           vg_half_to((const uint32_t(*)[3])m->tri, (uint32_t)g) ==
+             vg_half_to((const uint32_t(*)[3])m->tri, (uint32_t)h);
+  return n;
+}
+
+/* One edge on the wall, between two free ones, is cut, and the diagonal. */
+static void a_sheet_on_one_edge(void **state)
+{
+  const double o[3] = { -.5, 0, -1 }, u[3] = { .5, 0, 0 }, v[3] = { 0, 0, .5 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+
+  (void)state;
+  assert_int_equal(make(&m, o, u, v, 1, &r, NULL), VG_OK);
+  expect(&m, &r, 5, 2, 2);
+  assert_int_equal(n_repeated(&m), 0);
   vg_mesh_release(&m);
 }
 
@@ -287,6 +277,7 @@ int main(void)
     cmocka_unit_test(a_sheet_of_two_triangles),
     cmocka_unit_test(a_single_triangle),
     cmocka_unit_test(a_sheet_on_a_wall),
+    cmocka_unit_test(a_sheet_on_one_edge),
     cmocka_unit_test(a_wall_across),
     cmocka_unit_test(sheets_near_walls),
     cmocka_unit_test(edges_that_pass),

@@ -24,7 +24,8 @@ struct vg_planar_law {
  *
  * @param n, p         points in the 2-D coordinates of the plane
  * @param n_edge       boundary segments, with the region on their LEFT; several
- *                     loops, holes and touching loops are allowed
+ *                     loops, holes, touching loops and slits, of which the
+ *                     segments occur in both directions, are allowed
  * @param law          target edge length
  * @param n_new, add   out: points added inside, owned by the caller
  * @param n_tri, tri   out: counter-clockwise triangles over the n + n_new

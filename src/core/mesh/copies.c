@@ -16,6 +16,18 @@ struct copies {
   size_t n;        /* points that are not the first ones at their places */
 };
 
+size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i)
+{
+  size_t n = 0, front = 0;
+
+  assert(i < m->n_patch);
+  if (m->patch[i].inner != VG_INNER_BACK) return i;
+  for (size_t k = 0; k < i; k++) n += m->patch[k].inner == VG_INNER_BACK;
+  while (m->patch[front].inner != VG_INNER_FRONT || n--) front++;
+  assert(front < m->n_patch);
+  return front;
+}
+
 static int is_same_place(const double a[3], const double b[3])
 {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
@@ -38,6 +50,64 @@ vg_status vg_mesh_first_points(const struct vg_mesh *m, const uint8_t *on,
     if (*at == VG_TABLE_FREE) *at = p;
     first[p] = *at;
   }
+  vg_table_release(&table);
+  return VG_OK;
+}
+
+vg_status vg_mesh_inner_points(const struct vg_mesh *m, uint32_t **first,
+                               struct vg_error *err)
+{
+  uint8_t *on;
+  vg_status st;
+
+  *first = NULL;
+  if (!vg_mesh_has_inner(m)) return VG_OK;
+  on = vg_calloc(m->n_point, 1);
+  *first = vg_alloc(m->n_point, sizeof **first);
+  for (size_t t = 0; on && t < m->n_tri; t++)
+    for (int k = 0; m->patch[m->tri_patch[t]].inner && k < 3; k++)
+      on[m->tri[t][k]] = 1;
+  st = on && *first ? vg_mesh_first_points(m, on, *first, err)
+                    : vg_fail_memory(err, "the inner surfaces");
+  free(on);
+  if (st >= 0) return VG_OK;
+  free(*first);
+  *first = NULL;
+  return st;
+}
+
+static struct vg_tri_key key_of(const struct vg_mesh *m, const uint32_t *first,
+                                size_t t)
+{
+  const uint32_t *v = m->tri[t];
+
+  return vg_tri_key((uint32_t[3]){ first[v[0]], first[v[1]], first[v[2]] });
+}
+
+vg_status vg_mesh_inner_pairs(const struct vg_mesh *m, const uint32_t *first,
+                              uint32_t *other, struct vg_error *err)
+{
+  struct vg_table table;
+
+  assert(first && (other || !m->n_tri));
+  if (vg_table_init(&table, m->n_tri))
+    return vg_fail_memory(err, "the inner surfaces");
+  for (size_t t = 0; t < m->n_tri; t++) other[t] = UINT32_MAX;
+  for (int32_t side = VG_INNER_FRONT; side <= VG_INNER_BACK; side++)
+    for (uint32_t t = 0; t < m->n_tri; t++) {
+      struct vg_tri_key key;
+      uint32_t *at;
+
+      if (m->patch[m->tri_patch[t]].inner != side) continue;
+      key = key_of(m, first, t);
+      VG_TABLE_FIND(&table, at, vg_tri_key_hash(key),
+                    vg_tri_key_same(key_of(m, first, *at), key));
+      if (side == VG_INNER_FRONT) *at = t;
+      else if (*at != VG_TABLE_FREE) {
+        other[t] = *at;
+        other[*at] = t;
+      }
+    }
   vg_table_release(&table);
   return VG_OK;
 }

@@ -14,10 +14,27 @@ static inline int vg_mesh_has_inner(const struct vg_mesh *m)
   return 0;
 }
 
+/** The front of patch i if this is the back of an inner surface, otherwise i.
+ * Backs are in the order of their fronts. O(n_patch). */
+size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i);
+
 /** first[p]: for a point p with on[p], the first such point with the same
  * coordinates; for others p. [n_point] each. VG_ERR_MEMORY. */
 vg_status vg_mesh_first_points(const struct vg_mesh *m, const uint8_t *on,
                                uint32_t *first, struct vg_error *err);
+
+/** first[p]: for a point p of an inner surface, the first such point with the
+ * same coordinates; for others p. Sets *first, [m->n_point], to be freed; NULL
+ * if no patch is inner. VG_ERR_MEMORY. */
+vg_status vg_mesh_inner_points(const struct vg_mesh *m, uint32_t **first,
+                               struct vg_error *err);
+
+/** other[t]: for a triangle of an inner surface the triangle of its other side,
+ * which has the same places as corners; UINT32_MAX for others, and where layers
+ * have separated the sides. first: of vg_mesh_inner_points. other: [m->n_tri].
+ * VG_ERR_MEMORY. */
+vg_status vg_mesh_inner_pairs(const struct vg_mesh *m, const uint32_t *first,
+                              uint32_t *other, struct vg_error *err);
 
 /** Count the points that have the coordinates of an earlier one, both being
  * corners of triangles that lie back to back on another triangle: the sides of

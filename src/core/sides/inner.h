@@ -22,8 +22,8 @@
 
 struct vg_inner_report {
   size_t n_tri;    /* triangles of the sheets, each counted once */
-  size_t n_cut;    /* edges cut because a triangle had all its corners on free
-                      edges, so that its two sides had the same points */
+  size_t n_cut;    /* edges cut because the two sides of a triangle, or of an
+                      edge on another surface, had the same points */
   size_t n_point;  /* points that were added as copies */
   size_t n_sealed; /* regions of the fluid that the sheets separate from the
                       others */

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "core/sides/inner_parts.h"
+#include "core/sides/sides_parts.h"
 
 /* Do both sides of triangle t have the same points? */
 static int is_same(const struct vg_inner_work *s, size_t t)
@@ -15,6 +16,38 @@ static int is_same(const struct vg_inner_work *s, size_t t)
 
   return vg_is_sheet(s, t) && sector[0] == sector[3] &&
          sector[1] == sector[4] && sector[2] == sector[5];
+}
+
+/* Sectors of the wedge above half-edge h at the lower and the higher point of
+ * its edge. */
+static void ends_of(const struct vg_inner_work *s, uint32_t h, uint32_t end[2])
+{
+  const uint32_t e = vg_wedge_above(&s->sides, h);
+  const int is_up = vg_half_from(s->sides.tri, h) < vg_half_to(s->sides.tri, h);
+
+  end[!is_up] = s->sides.sector[e];
+  end[is_up] = s->sides.sector[vg_half_next(e)];
+}
+
+/* Does a sheet end on another surface in this edge alone, between two free
+ * edges, so that the sides of the sheet would have the same points there? */
+static int is_tied(const struct vg_inner_work *s, size_t edge)
+{
+  const struct vg_edges *e = &s->sides.edge;
+  const uint32_t n = vg_edges_count(e, edge), *half = vg_edges_at(e, edge);
+  int n_sheet = 0;
+
+  for (uint32_t k = 0; k < n; k++) n_sheet += vg_is_sheet(s, half[k] / 3);
+  if (!n_sheet || (uint32_t)n_sheet == n) return 0;
+  for (uint32_t k = 0; k < n; k++)
+    for (uint32_t l = 0; l < k; l++) {
+      uint32_t a[2], b[2];
+
+      ends_of(s, half[k], a);
+      ends_of(s, half[l], b);
+      if (a[0] == b[0] && a[1] == b[1]) return 1;
+    }
+  return 0;
 }
 
 /* Rank of half-edge h for a cut: edges of sheets alone before those of walls;
@@ -127,29 +160,53 @@ static vg_status reserve(struct vg_inner_work *s, size_t n,
   return VG_OK;
 }
 
+/* Cuts edge h, or triangle t if that is UINT32_MAX. If a triangle was cut
+ * before, the next pass does it. */
+static size_t cut(struct vg_inner_work *s, uint32_t t, uint32_t h,
+                  uint8_t *is_done)
+{
+  if (h != UINT32_MAX && !is_whole(s, h, is_done)) return 0;
+  if (h == UINT32_MAX) cut_alone(s, t, is_done);
+  else cut_edge(s, h, is_done);
+  return 1;
+}
+
+/* Marks the edges and triangles to be cut. Returns their number. */
+static size_t mark(const struct vg_inner_work *s, uint8_t *edge, uint8_t *tri)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < s->sides.edge.n; i++)
+    n += edge[i] = (uint8_t)is_tied(s, i);
+  for (size_t t = 0; t < s->m->n_tri; t++) n += tri[t] = (uint8_t)is_same(s, t);
+  return n;
+}
+
 vg_status vg_inner_cut(struct vg_inner_work *s, size_t *n_cut,
                        struct vg_error *err)
 {
+  const struct vg_edges *e = &s->sides.edge;
   const uint32_t n_tri = (uint32_t)s->m->n_tri;
-  uint8_t *is_done = vg_calloc(n_tri, 1);
-  size_t n = 0;
-  vg_status st = is_done ? VG_OK : vg_fail_memory(err, "the sides of a sheet");
+  uint8_t *is_done = vg_calloc(n_tri, 1), *tri = vg_calloc(n_tri, 1);
+  uint8_t *edge = vg_calloc(e->n, 1);
+  size_t n;
+  vg_status st = VG_OK;
 
   *n_cut = 0;
-  for (uint32_t t = 0; t < n_tri; t++) n += (size_t)is_same(s, t);
-  if (st >= 0 && n) st = reserve(s, n, err);
+  if (!is_done || !tri || !edge)
+    VG_TRY(vg_fail_memory(err, "the sides of a sheet"));
+  n = mark(s, edge, tri);
+  if (!n) goto done;
+  VG_TRY(reserve(s, n, err));
   s->sides.x = NULL; /* may have moved */
-  for (uint32_t t = 0; st >= 0 && n && t < n_tri; t++) {
-    uint32_t h;
-
-    if (is_done[t] || !is_same(s, t)) continue;
-    s->sides.tri = (const uint32_t(*)[3])s->m->tri;
-    h = edge_to_cut(s, t);
-    if (h != UINT32_MAX && !is_whole(s, h, is_done)) continue; /* next pass */
-    if (h == UINT32_MAX) cut_alone(s, t, is_done);
-    else cut_edge(s, h, is_done);
-    ++*n_cut;
-  }
+  s->sides.tri = (const uint32_t(*)[3])s->m->tri;
+  for (size_t i = 0; i < e->n; i++)
+    if (edge[i]) *n_cut += cut(s, 0, *vg_edges_at(e, i), is_done);
+  for (uint32_t t = 0; t < n_tri; t++)
+    if (tri[t] && !is_done[t]) *n_cut += cut(s, t, edge_to_cut(s, t), is_done);
+done:
   free(is_done);
+  free(tri);
+  free(edge);
   return st;
 }

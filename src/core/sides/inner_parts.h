@@ -29,10 +29,11 @@ vg_status vg_inner_check(const struct vg_inner_work *s, struct vg_error *err);
  * go to s->report. O(n log n). (inner_near.c) */
 vg_status vg_inner_near(const struct vg_inner_work *s, struct vg_error *err);
 
-/** Cut edges of triangles of which all corners have one sector, so that both
- * sides would have the same points: the longest edge that has other triangles,
- * whose middle has two sectors or more. s->sides is out of date afterwards if
- * *n_cut, their number, is not 0. (inner_cut.c) */
+/** Cut edges so that the two sides of a sheet have different points: the
+ * longest edge of a triangle of which all corners have one sector, among those
+ * that other triangles have; and an edge in which alone a sheet ends on another
+ * surface. Their middles have two sectors or more. s->sides is out of date
+ * afterwards if *n_cut, their number, is not 0. (inner_cut.c) */
 vg_status vg_inner_cut(struct vg_inner_work *s, size_t *n_cut,
                        struct vg_error *err);
 

@@ -12,8 +12,8 @@
  * triangle of the surface that is within the cone of 45 degrees about dir with
  * its apex at the root, or on the line along dir from the centre of a face of
  * the column. These triangles are ignored:
- * - those that share a point with the faces of the column, or lie in a patch in
- *   which the column slides;
+ * - those that share a point with the faces of the column, or the place of one
+ *   on an inner surface, or lie in a patch in which the column slides;
  * - those that the column does not approach: normal . dir > -0.2 |dir|;
  * - those whose columns grow in nearly the same direction (mean . dir > 0.3,
  *   for unit vectors): the two sides of a concave edge, once the directions
@@ -45,8 +45,9 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
 /** Finds the columns of tops that touch something. Exact; touching is enough. A
  * top must not touch
  * - a top that shares no column with it; tops that share a column must not
- *   touch anywhere else (columns of one root count as one column while they
- *   have no level);
+ *   touch anywhere else (columns of one root, or of the copies of a point on
+ *   the sides of an inner surface, count as one column while they have no
+ *   level);
  * - a triangle of the surface without layers, except in slide patches in which
  *   a column of its face slides.
  * Side faces in one slide patch must not overlap within it, nor touch a

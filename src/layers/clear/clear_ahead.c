@@ -5,8 +5,9 @@
  * neighbouring columns at once.
  *
  * A triangle T limits a column with unit direction u unless
- * - T shares a point with the faces of the column, or lies in a patch in which
- *   the column slides;
+ * - T shares a point with the faces of the column, or a place, if both sides of
+ *   an inner surface have copies of it, or lies in a patch in which the column
+ *   slides;
  * - T does not face the column: n(T) . u > -0.2. The column would hit such a
  *   triangle from behind, or only after a long way. At a concave edge, where
  *   directions turn until they leave both walls, T is such a triangle although
@@ -57,16 +58,24 @@ struct query {
 
 /* --- one triangle -------------------------------------------------------- */
 
-static int shares_point(const struct query *q, const uint32_t t[3])
+static uint32_t place_of(const struct vg_ahead *x, uint32_t point)
+{
+  return x->first ? x->first[point] : point;
+}
+
+static int shares_point(const struct query *q, const uint32_t tri[3])
 {
   const struct vg_columns *c = q->x->columns;
   const struct vg_topology *y = q->x->topology;
+  uint32_t t[3];
+
+  for (int k = 0; k < 3; k++) t[k] = place_of(q->x, tri[k]);
 
   for (uint32_t i = y->first[q->column]; i < y->first[q->column + 1]; i++) {
     const uint32_t *face = c->face[y->corner[i] / 3];
 
     for (int k = 0; k < 3; k++) {
-      uint32_t root = c->column[face[k]].root;
+      uint32_t root = place_of(q->x, c->column[face[k]].root);
 
       if (root == t[0] || root == t[1] || root == t[2]) return 1;
     }

@@ -22,6 +22,8 @@ struct vg_ahead {
   uint32_t *face_of;   /* [n_tri] face of the columns on each triangle, or
                           VG_NO_INDEX. */
   uint32_t *column_of; /* [n_point + 1] first column of each point. */
+  uint32_t *first;     /* [n_point] first copy of each point on an inner
+                          surface, or NULL: no inner surface. */
   uint8_t *slid;       /* [n_patch] 1: columns slide in the patch. */
   struct vg_boxes boxes;
   struct vg_normal_boxes *sides; /* [nodes] normals in each node. */

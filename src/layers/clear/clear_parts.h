@@ -85,12 +85,15 @@ void vg_boxes_touch(const struct vg_boxes *b, const double (*point)[3],
 /* clear_sides.c ----------------------------------------------------------*/
 
 /* Tops and surface in one numbering: the point of a column without levels is
- * its root, all other columns have the point n_point + column. */
+ * its root, all other columns have the point n_point + column. The copies of a
+ * root on the sides of an inner surface count as one point. */
 struct vg_tops {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
   const uint8_t *active; /* [n_column], or NULL: all are active. */
   size_t n_point;        /* Points of the surface. */
+  uint32_t *first;       /* [n_point] first copy of each point, or NULL: no
+                            inner surface. */
   double (*point)[3];    /* [n_point + n_column] coordinates. */
   uint32_t *node;        /* [n_column] point of each column. */
   uint8_t *bad;          /* [n_column] may be set by any thread. */
@@ -101,6 +104,12 @@ static inline int vg_tops_active(const struct vg_tops *t, uint32_t c)
 {
   assert(c < t->columns->n_column);
   return !t->active || t->active[c];
+}
+
+static inline uint32_t vg_tops_root(const struct vg_tops *t, uint32_t point)
+{
+  assert(point < t->n_point);
+  return t->first ? t->first[point] : point;
 }
 
 /** Marks a column that has levels. Columns without levels cannot be lowered. */

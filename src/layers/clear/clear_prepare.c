@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/copies.h"
 
 #define SHARP 0.5 /* L11: cosine between a column and its triangle. */
 
@@ -20,6 +21,7 @@ void vg_ahead_release(struct vg_ahead *x)
 {
   free(x->face_of);
   free(x->column_of);
+  free(x->first);
   free(x->slid);
   free(x->sides);
   free(x->order);
@@ -223,6 +225,8 @@ vg_status vg_ahead_prepare(struct vg_ahead *x, int threads,
   if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal ||
       !x->order)
     return vg_fail_memory(err, "the search for surfaces opposite the layers");
+  st = vg_mesh_inner_points(m, &x->first, err);
+  if (st < 0) return st;
   index_columns(x);
   measure_sides(x, n_node, threads);
   return order_columns(x, err);

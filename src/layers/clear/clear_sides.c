@@ -113,8 +113,8 @@ static void corners(const struct vg_tops *t, size_t r, uint32_t node[4])
 {
   uint32_t a = t->columns->border[r][0], b = t->columns->border[r][1];
 
-  node[0] = t->columns->column[a].root;
-  node[1] = t->columns->column[b].root;
+  node[0] = vg_tops_root(t, t->columns->column[a].root);
+  node[1] = vg_tops_root(t, t->columns->column[b].root);
   node[2] = t->node[b];
   node[3] = t->node[a];
 }

@@ -15,6 +15,7 @@
 #include "core/geometry/predicates.h"
 #include "core/geometry/triangles.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/copies.h"
 #include "layers/clear/clear_parts.h"
 
 enum {
@@ -96,7 +97,7 @@ static void place_tops(void *context, size_t first, size_t end, int worker)
     const struct vg_column *c = &t->columns->column[i];
     double *x = t->point[t->n_point + i];
 
-    t->node[i] = c->root;
+    t->node[i] = vg_tops_root(t, c->root);
     memcpy(x, t->surface->point[c->root], 3 * sizeof *x);
     if (!c->n) continue;
     top_of(t, i, &h, x);
@@ -230,14 +231,15 @@ static void meet_surface(void *context, size_t i, size_t s)
 {
   const struct clear *x = context;
   const struct vg_mesh *m = x->t.surface;
-  uint32_t f = x->boxes.item[i], patch = m->tri_patch[s];
+  uint32_t f = x->boxes.item[i], patch = m->tri_patch[s], v[3];
 
   if (!is_raised(x, x->boxes.tri[i]) || is_marked(x, f)) return;
   if (x->is_slide[patch] &&
       slides_in(x->t.columns, x->t.columns->face[f], patch))
     return;
-  if (vg_triangles_meet((const double(*)[3])x->t.point, x->boxes.tri[i],
-                        m->tri[s], one_fan, one_fan))
+  for (int k = 0; k < 3; k++) v[k] = vg_tops_root(&x->t, m->tri[s][k]);
+  if (vg_triangles_meet((const double(*)[3])x->t.point, x->boxes.tri[i], v,
+                        one_fan, one_fan))
     mark_face(x, f);
 }
 
@@ -260,6 +262,7 @@ static void clear_release(struct clear *x)
   free(x->t.point);
   free(x->t.node);
   free(x->t.bad);
+  free(x->t.first);
   free(x->tri);
   free(x->state);
   free(x->covered);
@@ -288,7 +291,7 @@ static vg_status allocate(struct clear *x, struct vg_error *err)
       !x->covered || !x->active)
     return vg_fail_memory(err, "the tops of the layers");
   if (m->n_point) memcpy(x->t.point, m->point, m->n_point * sizeof *m->point);
-  return VG_OK;
+  return vg_mesh_inner_points(m, &x->t.first, err);
 }
 
 static void list_faces(struct clear *x)

@@ -69,7 +69,9 @@
   ROW(NEIGHBOUR, "neighbour", "lower layers are requested next to it", 90,     \
       190, 210)                                                                \
   ROW(GRADATION, "gradation", "the local edge length is smaller next to it",   \
-      150, 150, 60)
+      150, 150, 60)                                                            \
+  ROW(INNER, "inner", "free edge of an inner surface, or one without layers",  \
+      120, 190, 80)
 
 enum vg_layer_cause {
 #define ROW(name, key, text, red, green, blue) VG_CAUSE_##name,

@@ -48,7 +48,8 @@ static const double *foot_of(const struct walls *w, uint32_t column)
 }
 
 /* Whether the corners of two neighbouring faces are four, with different roots
- * and without marks, on one patch, and with enough levels. */
+ * and without marks, on one patch, and with enough levels. Inner surfaces have
+ * no pairs, since those of both sides would differ. */
 static int may_pair(const struct walls *w, const size_t pair[2])
 {
   const struct vg_columns *c = w->e->columns;
@@ -60,7 +61,8 @@ static int may_pair(const struct walls *w, const size_t pair[2])
 
   for (int k = 0; k < 9; k++) n_common += f[k / 3] == g[k % 3];
   if (n_common != 2 ||
-      patch[c->face_tri[pair[0]]] != patch[c->face_tri[pair[1]]])
+      patch[c->face_tri[pair[0]]] != patch[c->face_tri[pair[1]]] ||
+      w->surface->patch[patch[c->face_tri[pair[0]]]].inner != VG_INNER_NOT)
     return 0;
   vg_pair_ring(c, pair, q);
   if (c->column[q[0]].root == c->column[q[2]].root) return 0;

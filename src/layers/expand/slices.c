@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "core/judge/flat_cells.h"
+#include "core/mesh/copies.h"
 #include "layers/expand/slices_parts.h"
 
 /* Least number of cells in a slice, and number of points in a slice of boundary
@@ -29,6 +30,7 @@ struct vg_layer_slices {
   struct vg_join_plan plan;
   const struct vg_slices *field;
   double (*point)[3]; /* Boundary points. */
+  uint64_t n_copy;    /* Boundary points that are copies of earlier ones. */
   uint8_t *kind;      /* [front n_point] enum vg_point_kind, for flat cells. */
   size_t rank, size;
   size_t n_part; /* Number of slices of boundary points. */
@@ -58,6 +60,15 @@ static vg_status find_runs(struct vg_layer_slices *k, struct vg_error *err)
   return VG_OK;
 }
 
+static vg_status count_copies(struct vg_layer_slices *k, struct vg_error *err)
+{
+  struct vg_mesh m = k->plan.boundary;
+
+  m.point = k->point;
+  m.n_point = k->plan.first_inner;
+  return vg_mesh_has_inner(&m) ? vg_mesh_copies(&m, &k->n_copy, err) : VG_OK;
+}
+
 static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
 {
   size_t n = k->plan.first_inner;
@@ -67,8 +78,10 @@ static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
   k->point = vg_alloc(n, sizeof *k->point);
   if (!k->point) return vg_fail_memory(err, "the points of the boundary");
   vg_join_plan_points(&k->plan, 1, k->point);
+  VG_TRY(count_copies(k, err));
   k->n_part = (n + SLICE_POINTS - 1) / SLICE_POINTS;
-  return VG_OK;
+done:
+  return st;
 }
 
 static uint64_t cells_of(const struct vg_layer_slices *k, size_t slice)
@@ -246,7 +259,7 @@ static void describe(struct vg_layer_slices *k, struct vg_slices *out)
   memset(out, 0, sizeof *out);
   out->n_point = p->n_point;
   out->n_boundary_point = p->first_inner;
-  out->n_copy = k->field->n_copy;
+  out->n_copy = k->n_copy;
   out->n_layer_point = p->first_field;
   for (int i = 0; i < VG_SLICE_KINDS; i++) {
     out->n_layer_cell[i] = p->expand.n_cell[i];

@@ -9,6 +9,7 @@
 #include "base/checks.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "core/mesh/mesh_defects.h"
 #include "core/surface/surface_check.h"
 #include "layers/expand/expand_defects.h"
@@ -177,10 +178,12 @@ static vg_status first_allowed(struct vg_layer_work *w,
     goto done;
   }
   for (size_t i = 0; i < n; i++) {
+    if (w->t.blocked && w->t.blocked[i] == VG_CAUSE_INNER)
+      vg_heights_lower(w, i, 0, VG_CAUSE_INNER);
     if (w->visibility[i] == 0)
       vg_heights_lower(w, i, 0, vg_unseen_cause(w, i, normal));
     if (w->t.blocked && w->t.blocked[i])
-      vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
+      vg_heights_lower(w, i, 0, (enum vg_layer_cause)w->t.blocked[i]);
   }
   VG_TRY(vg_heights_slack(w, err));
   VG_TRY(vg_heights_corner(w, err));
@@ -295,6 +298,85 @@ static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
   }
 }
 
+/* A front to be checked, with one point for all copies of a point of an inner
+ * surface, and one of two sides that lie back to back. */
+struct closed {
+  struct vg_mesh mesh; /* Without inner surfaces, its arrays are borrowed. */
+  uint32_t *of;        /* [mesh.n_tri] face of the front; NULL: the same. */
+};
+
+static void closed_release(struct closed *c)
+{
+  if (!c->of) return;
+  free(c->of);
+  free(c->mesh.tri);
+  free(c->mesh.tri_patch);
+}
+
+static vg_status close_front(const struct vg_front *front,
+                             const struct vg_mesh *surface, struct closed *c,
+                             struct vg_error *err)
+{
+  const struct vg_mesh m = vg_front_mesh(front, surface);
+  uint32_t *first = NULL, *other = NULL;
+  vg_status st;
+
+  *c = (struct closed){ .mesh = m };
+  VG_TRY(vg_mesh_inner_points(&m, &first, err));
+  if (!first) return VG_OK;
+  other = vg_alloc(m.n_tri, sizeof *other);
+  c->of = vg_alloc(m.n_tri, sizeof *c->of);
+  if (!other || !c->of) VG_TRY(vg_fail_memory(err, "the front of the layers"));
+  c->mesh.tri = vg_alloc(m.n_tri, sizeof *m.tri);
+  c->mesh.tri_patch = vg_alloc(m.n_tri, sizeof *m.tri_patch);
+  if (!c->mesh.tri || !c->mesh.tri_patch)
+    VG_TRY(vg_fail_memory(err, "the front of the layers"));
+  VG_TRY(vg_mesh_inner_pairs(&m, first, other, err));
+  c->mesh.n_tri = 0;
+  for (uint32_t t = 0; t < m.n_tri; t++) {
+    if (other[t] < t) continue;
+    for (int k = 0; k < 3; k++)
+      c->mesh.tri[c->mesh.n_tri][k] = first[m.tri[t][k]];
+    c->mesh.tri_patch[c->mesh.n_tri] = m.tri_patch[t];
+    c->of[c->mesh.n_tri++] = t;
+  }
+done:
+  free(first);
+  free(other);
+  return st;
+}
+
+/* Marks the columns of faces that intersect or coincide. Any number of faces
+ * may share an edge of an inner surface. Returns the number of defects. */
+static size_t mark_crossing(const struct vg_front *front,
+                            const struct closed *c,
+                            const struct vg_surface_report *r, uint8_t *bad)
+{
+  static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
+                                              VG_DEFECT_DEGENERATE_TRIANGLE,
+                                              VG_DEFECT_DUPLICATE_TRIANGLE,
+                                              VG_DEFECT_NONMANIFOLD_EDGE,
+                                              VG_DEFECT_SHARED_WALL };
+  const size_t n_kind = c->of ? 3 : sizeof kind / sizeof *kind;
+  size_t n = 0;
+  uint32_t bits = 0;
+
+  for (size_t i = 0; i < n_kind; i++) {
+    n += r->count[kind[i]];
+    bits |= 1u << kind[i];
+  }
+  for (size_t t = 0; n && t < c->mesh.n_tri; t++) {
+    const uint32_t *v = front->face[c->of ? c->of[t] : t];
+
+    for (int k = 0; k < 3 && r->face_kinds[t] & bits; k++) {
+      const uint32_t i = vg_layer_column_of(front->id[v[k]]);
+
+      if (i != VG_NO_INDEX) bad[i] = 1;
+    }
+  }
+  return n;
+}
+
 /* Tests the final front: remeshed patches against tops. */
 static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
                            uint8_t *bad, size_t round, size_t *n_bad,
@@ -302,33 +384,17 @@ static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  struct vg_mesh mesh = vg_front_mesh(front, w->m); /* Not repaired. */
-  static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
-                                              VG_DEFECT_DEGENERATE_TRIANGLE,
-                                              VG_DEFECT_NONMANIFOLD_EDGE,
-                                              VG_DEFECT_DUPLICATE_TRIANGLE,
-                                              VG_DEFECT_SHARED_WALL };
-  size_t n_cross = 0;
-  uint32_t bits = 0;
+  struct closed c;
+  size_t n_cross;
   vg_status st;
 
-  o.repair = 0;
+  o.repair = 0; /* The arrays are borrowed. */
   o.threads = w->o->threads;
   *n_bad = 0;
   memset(bad, 0, w->c->n_column);
-  VG_TRY(vg_surface_check(&mesh, &o, &r, err));
-  for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
-    n_cross += r.count[kind[i]];
-    bits |= 1u << kind[i];
-  }
-  for (size_t t = 0; n_cross && t < front->n_face; t++) {
-    if (!(r.face_kinds[t] & bits)) continue;
-    for (int k = 0; k < 3; k++) {
-      uint32_t c = vg_layer_column_of(front->id[front->face[t][k]]);
-
-      if (c != VG_NO_INDEX) bad[c] = 1;
-    }
-  }
+  VG_TRY(close_front(front, w->m, &c, err));
+  VG_TRY(vg_surface_check(&c.mesh, &o, &r, err));
+  n_cross = mark_crossing(front, &c, &r, bad);
   for (size_t i = 0; n_cross && i < w->c->n_column; i++) {
     if (!bad[i]) continue;
     vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
@@ -339,6 +405,7 @@ static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
                  "the surface intersects itself outside the layers; check it "
                  "with `vanguard check`");
 done:
+  closed_release(&c);
   vg_surface_report_release(&r);
   return st;
 }

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "layers/slide/slide_parts.h"
 
 enum { TEXT = sizeof((struct vg_slide_failure *)0)->text };
@@ -77,6 +78,7 @@ static void release(struct vg_slide_work *w)
   free(w->slide_of);
   free(w->x);
   free(w->local);
+  free(w->copy_of);
   free(w->first);
   free(w->half);
   free(w->part);
@@ -119,6 +121,7 @@ static vg_status prepare(struct vg_slide_work *w)
   for (size_t i = 0; i < m->n_patch; i++) w->slide_of[i] = VG_NO_INDEX;
   for (size_t i = 0; i < w->n_slide; i++)
     w->slide_of[w->slide[i].patch] = (uint32_t)i;
+  if (vg_mesh_inner_points(m, &w->copy_of, w->err)) return VG_ERR_MEMORY;
   return vg_slide_parts(w);
 }
 

@@ -40,7 +40,8 @@ struct vg_slide {
   const double (*vertex_normal)[3];
 };
 
-/** Finds the patches that share an edge with a wall, sorted by patch.
+/** Finds the patches that share an edge with a wall, sorted by patch. Inner
+ * surfaces are not among them: their two sides must keep the same triangles.
  * @param is_wall  [surface->n_patch]
  * @param out      one block, owned by the caller (free); NULL if n is 0
  *

@@ -337,7 +337,7 @@ vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
   measure(surface, shape);
   for (size_t i = 0; i < surface->n_patch; i++) {
     slide_of[i] = VG_NO_INDEX;
-    if (!shape[i].found) continue;
+    if (!shape[i].found || surface->patch[i].inner != VG_INNER_NOT) continue;
     slide_of[i] = (uint32_t)n_found;
     start(&shape[i], (uint32_t)i, &slide[n_found++]);
   }

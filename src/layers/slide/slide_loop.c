@@ -207,19 +207,21 @@ static int visit_edge(void *user, uint32_t j)
   struct cross *x = user;
   const uint32_t *e = x->l->edge[x->edge], *f = x->l->edge[j];
   const double *at[4];
+  uint32_t v[4];
   int k, is_bad;
 
   if (j <= x->edge) return 0;
-  for (k = 0; k < 2; k++) {
-    at[k] = x->p[x->w->local[e[k]]];
-    at[2 + k] = x->p[x->w->local[f[k]]];
+  for (k = 0; k < 4; k++) {
+    v[k] = vg_slide_local(x->w, k < 2 ? e[k] : f[k - 2]);
+    at[k] = x->p[v[k]];
   }
-  if ((e[0] == f[0] && e[1] == f[1]) || (e[0] == f[1] && e[1] == f[0]))
-    is_bad = 1;
-  else if (e[0] == f[0]) is_bad = overlap(at[0], at[1], at[3]);
-  else if (e[0] == f[1]) is_bad = overlap(at[0], at[1], at[2]);
-  else if (e[1] == f[0]) is_bad = overlap(at[1], at[0], at[3]);
-  else if (e[1] == f[1]) is_bad = overlap(at[1], at[0], at[2]);
+  if (v[0] == v[2] && v[1] == v[3]) is_bad = 1;
+  else if (v[0] == v[3] && v[1] == v[2])
+    is_bad = e[0] == f[1] && e[1] == f[0]; /* Otherwise a slit. */
+  else if (v[0] == v[2]) is_bad = overlap(at[0], at[1], at[3]);
+  else if (v[0] == v[3]) is_bad = overlap(at[0], at[1], at[2]);
+  else if (v[1] == v[2]) is_bad = overlap(at[1], at[0], at[3]);
+  else if (v[1] == v[3]) is_bad = overlap(at[1], at[0], at[2]);
   else is_bad = touch(at[0], at[1], at[2], at[3]);
   if (!is_bad) return 0;
   x->n_bad++;
@@ -245,10 +247,10 @@ static int visit_flank(void *user, uint32_t j)
 {
   struct cross *x = user;
   const uint32_t v = x->l->edge[j][0];
-  const double *p = x->p[x->w->local[v]];
+  const double *p = x->p[vg_slide_local(x->w, v)];
 
   for (int i = 0; i < x->n; i++)
-    if (x->corner[i] == v) return 0;
+    if (vg_slide_first(x->w, x->corner[i]) == vg_slide_first(x->w, v)) return 0;
   for (int i = 0; i < x->n; i++)
     if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return 0;
   mark_bad_flank(x, "a side face of the layers overlaps another part of the "
@@ -350,8 +352,8 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 
   *n_bad = 0;
   for (size_t i = 0; box && i < loops->n; i++) {
-    const double *a = p[w->local[loops->edge[i][0]]];
-    const double *c = p[w->local[loops->edge[i][1]]];
+    const double *a = p[vg_slide_local(w, loops->edge[i][0])];
+    const double *c = p[vg_slide_local(w, loops->edge[i][1])];
     const double q[2][2] = { { a[0], a[1] }, { c[0], c[1] } };
 
     box[i] = box_of(2, q);

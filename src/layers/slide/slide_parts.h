@@ -41,9 +41,11 @@ struct vg_slide_work {
   struct vg_columns *c;
   uint32_t *slide_of; /* [m->n_patch] index into slide[]. */
   size_t n_x, cap_x;
-  double (*x)[3];  /* [n_x] surface points, tops, new points. */
-  uint32_t *local; /* [surface points, tops, points of curves] scratch; all
-                      VG_NO_INDEX between uses. */
+  double (*x)[3];    /* [n_x] surface points, tops, new points. */
+  uint32_t *local;   /* [surface points, tops, points of curves] scratch; all
+                        VG_NO_INDEX between uses. */
+  uint32_t *copy_of; /* [m->n_point] first copy of each point of an inner
+                        surface; NULL: no point has a copy. */
   /* Half-edges 3 * triangle + corner of slide patches, sorted by first
    * point. */
   uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]]. */
@@ -72,6 +74,18 @@ struct vg_slide_work {
   char *text; /* [200] "" until the first failure. */
   struct vg_error *err;
 };
+
+/** The first copy of point p, or p. */
+static inline uint32_t vg_slide_first(const struct vg_slide_work *w, uint32_t p)
+{
+  return w->copy_of && p < w->m->n_point ? w->copy_of[p] : p;
+}
+
+/** Number of point p in the region that is remeshed. */
+static inline uint32_t vg_slide_local(const struct vg_slide_work *w, uint32_t p)
+{
+  return w->local[vg_slide_first(w, p)];
+}
 
 /** Point of column i in the front: its top, or its root if it has no levels. */
 static inline uint32_t vg_slide_top(const struct vg_slide_work *w, uint32_t i)
@@ -156,12 +170,25 @@ void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
 
 /** Marks columns at which the boundary crosses itself or enters a side face.
  *
- * @param p  coordinates in the plane, indexed by w->local of the points
+ * @param p  coordinates in the plane, indexed by vg_slide_local
  * @param n_bad  out: number of such places; 0: the region is valid */
 vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
                          const struct vg_slide_frame *frame,
                          const struct vg_slide_loops *loops,
                          const double (*p)[2], size_t *n_bad);
+
+/* slide_copies.c ----------------------------------------------------------*/
+
+/** Replaces first copies in new triangles of a region by those of the sides on
+ * which the triangles are.
+ *
+ * @param n_point  points of the region, numbered by vg_slide_local
+ * @param tri      [n_tri] points of the region
+ * @param number   in, out: [n_tri] the same points in the numbering of *w */
+vg_status vg_slide_use_copies(const struct vg_slide_work *w,
+                              const struct vg_slide_loops *loops,
+                              size_t n_point, size_t n_tri,
+                              const uint32_t (*tri)[3], uint32_t (*number)[3]);
 
 /* slide_curved.c ----------------------------------------------------------*/
 

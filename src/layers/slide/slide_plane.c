@@ -73,7 +73,8 @@ void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
   for (int k = 0; k < 3; k++) x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
 }
 
-/* The region in the plane with its own numbering; `number` is the point. */
+/* The region in the plane with its own numbering; `number` is the point, the
+ * first of its copies. */
 struct region {
   size_t n;
   uint32_t *number, (*edge)[2];
@@ -90,7 +91,7 @@ static vg_status make_region(struct vg_slide_work *w,
   if (!r->number || !r->edge || !r->p)
     return vg_fail_memory(w->err, "a slide patch");
   for (size_t i = 0; i < 2 * l->n; i++) {
-    const uint32_t v = l->edge[i / 2][i % 2];
+    const uint32_t v = vg_slide_first(w, l->edge[i / 2][i % 2]);
 
     if (w->local[v] == VG_NO_INDEX) {
       vg_slide_to_plane(f, w->x[v], r->p[r->n]);
@@ -139,8 +140,10 @@ static void check_slivers(struct vg_slide_work *w, size_t s,
 }
 
 static vg_status append(struct vg_slide_work *w, size_t s,
-                        const struct vg_slide_law *law, const struct region *r,
-                        size_t n_add, const double (*add)[2], size_t n_tri,
+                        const struct vg_slide_law *law,
+                        const struct vg_slide_loops *loops,
+                        const struct region *r, size_t n_add,
+                        const double (*add)[2], size_t n_tri,
                         const uint32_t (*tri)[3])
 {
   const size_t base = w->n_x;
@@ -166,19 +169,21 @@ static vg_status append(struct vg_slide_work *w, size_t s,
                                 : (uint32_t)(base + (tri[i][k] - r->n));
     w->new_patch[w->n_new++] = w->part[s].patch;
   }
-  return VG_OK;
+  return vg_slide_use_copies(w, loops, r->n + n_add, n_tri, tri,
+                             w->new_tri + w->n_new - n_tri);
 }
 
 static vg_status fill(struct vg_slide_work *w, size_t s,
-                      struct vg_slide_law *law, const struct region *r,
-                      size_t n_edge)
+                      struct vg_slide_law *law,
+                      const struct vg_slide_loops *loops,
+                      const struct region *r)
 {
   double(*add)[2] = NULL;
   uint32_t(*tri)[3] = NULL;
   size_t n_add = 0, n_tri = 0;
   const struct vg_planar_law sizes = { .at = vg_slide_size, .user = law };
   struct vg_error err = VG_ERROR_INIT;
-  vg_status st = vg_planar_mesh(r->n, (const double(*)[2])r->p, n_edge,
+  vg_status st = vg_planar_mesh(r->n, (const double(*)[2])r->p, loops->n,
                                 (const uint32_t(*)[2])r->edge, &sizes, &n_add,
                                 &add, &n_tri, &tri, &err);
 
@@ -188,7 +193,7 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
   }
   if (st != VG_OK) return vg_fail(w->err, st, "%s", err.text);
   check_slivers(w, s, r, n_tri, (const uint32_t(*)[3])tri);
-  st = append(w, s, law, r, n_add, (const double(*)[2])add, n_tri,
+  st = append(w, s, law, loops, r, n_add, (const double(*)[2])add, n_tri,
               (const uint32_t(*)[3])tri);
   free(add);
   free(tri);
@@ -223,7 +228,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   VG_TRY(vg_slide_cross(w, s, &frame, &loops, (const double(*)[2])r.p, &n_bad));
   if (!n_bad) {
     VG_TRY(vg_slide_law_floor(w, &loops, &law));
-    VG_TRY(fill(w, s, &law, &r, loops.n));
+    VG_TRY(fill(w, s, &law, &loops, &r));
   }
   if (n_bad && !w->n_bad)
     vg_slide_mark_bad_all(w, s, "its border crosses itself");

@@ -15,10 +15,13 @@ struct vg_topology {
                            sorted. */
   uint8_t *preset;      /* [n_column] 1: the direction is given (a column inside
                            a fan, without a triangle of its own). */
-  uint8_t *blocked;     /* [n_column] 1: the column cannot have levels (n must
-                           be 0), since several wall sheets meet at the point,
-                           or the point touches more than two slide patches or a
-                           patch that is neither a wall nor a slide patch. */
+  uint8_t *blocked;     /* [n_column] VG_CAUSE_NONE, or why the column cannot
+                           have levels (n must be 0). VG_CAUSE_SLIDE: several
+                           wall sheets meet at the point, or the point touches
+                           more than two slide patches or a patch that is
+                           neither a wall nor a slide patch. VG_CAUSE_INNER: the
+                           point is on the free edge of an inner surface, or
+                           touches one without layers. */
 };
 #define VG_TOPOLOGY_INIT                                                       \
   {                                                                            \

@@ -148,6 +148,30 @@ static uint32_t find_reverse(const struct vg_wall *w, const struct rings *r,
   return found;
 }
 
+static int is_inner(const struct vg_mesh *m, size_t tri)
+{
+  return m->patch[m->tri_patch[tri]].inner != VG_INNER_NOT;
+}
+
+/* Whether half-edges h and g of the surface, which are opposite, belong to the
+ * two sides of one triangle: the free edge of an inner surface. */
+static int is_free_edge(const struct vg_mesh *m, uint32_t h, uint32_t g)
+{
+  const double *a, *b;
+
+  if (!is_inner(m, h / 3) || !is_inner(m, g / 3)) return 0;
+  h = vg_half_prev(h);
+  g = vg_half_prev(g);
+  a = m->point[m->tri[h / 3][h % 3]];
+  b = m->point[m->tri[g / 3][g % 3]];
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static void block(struct vg_wall *w, size_t p, enum vg_layer_cause why)
+{
+  if (w->blocked[p] != VG_CAUSE_INNER) w->blocked[p] = (uint8_t)why;
+}
+
 static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
                                 struct vg_error *err)
 {
@@ -161,8 +185,13 @@ static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
 
     w->opposite[h] = VG_NO_INDEX;
     if (g == VG_NO_INDEX) {
-      w->blocked[a] = w->blocked[b] = 1;
+      block(w, a, VG_CAUSE_SLIDE);
+      block(w, b, VG_CAUSE_SLIDE);
       continue;
+    }
+    if (is_free_edge(m, 3 * w->tri[h / 3] + h % 3, g)) {
+      block(w, a, VG_CAUSE_INNER);
+      block(w, b, VG_CAUSE_INNER);
     }
     face = r->face[g / 3];
     patch = m->tri_patch[g / 3];
@@ -185,7 +214,7 @@ static void add_slide(struct vg_wall *w, size_t p, uint32_t patch)
   uint32_t *s = w->slide[p];
 
   if (s[0] == patch || s[1] == patch) return;
-  if (s[1] != VG_NO_INDEX) w->blocked[p] = 1;
+  if (s[1] != VG_NO_INDEX) block(w, p, VG_CAUSE_SLIDE);
   if (patch < s[0]) {
     s[1] = s[0];
     s[0] = patch;
@@ -208,7 +237,8 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
     uint32_t t = r->corner[i] / 3, patch = m->tri_patch[t];
 
     if (r->role[patch] == SLIDE) add_slide(w, p, patch);
-    else if (r->role[patch] == INERT) w->blocked[p] = 1;
+    else if (r->role[patch] == INERT)
+      block(w, p, is_inner(m, t) ? VG_CAUSE_INNER : VG_CAUSE_SLIDE);
     if (r->face[t] == VG_NO_INDEX) continue;
     h = 3 * r->face[t] + r->corner[i] % 3;
     n_corner++;
@@ -223,9 +253,9 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
     h = vg_wall_turn(w, h);
   } while (h != VG_NO_INDEX && h != start && n_seen < n_corner);
   if (n_seen != n_corner || (h != VG_NO_INDEX && h != start)) {
-    w->blocked[p] = 1;
+    block(w, p, VG_CAUSE_SLIDE);
   } else if (h == start && n_corner < r->first[p + 1] - r->first[p]) {
-    w->blocked[p] = 1; /* Another sheet touches a closed ring. */
+    block(w, p, VG_CAUSE_SLIDE); /* Another sheet touches a closed ring. */
   }
 }
 

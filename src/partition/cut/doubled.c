@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/table.h"
-#include "base/tri_key.h"
 #include "core/mesh/copies.h"
 
 static int is_inner(const struct vg_mesh *m, size_t t, int32_t side)
@@ -22,41 +20,36 @@ static int is_inner(const struct vg_mesh *m, size_t t, int32_t side)
 static vg_status find_copies(struct vg_doubled *d, struct vg_error *err)
 {
   const struct vg_mesh *m = d->boundary;
-  uint8_t *on = vg_calloc(m->n_point, 1);
-  vg_status st = VG_OK;
+  vg_status st;
 
-  d->first = vg_alloc(m->n_point, sizeof *d->first);
+  VG_TRY(vg_mesh_inner_points(m, &d->first, err));
   d->has_copies = vg_calloc(m->n_point, 1);
-  if (!on || !d->first || !d->has_copies)
-    VG_TRY(vg_fail_memory(err, "the inner surfaces"));
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && !is_inner(m, t, VG_INNER_NOT); k++)
-      on[m->tri[t][k]] = 1;
-  VG_TRY(vg_mesh_first_points(m, on, d->first, err));
+  if (!d->has_copies) VG_TRY(vg_fail_memory(err, "the inner surfaces"));
   for (uint32_t p = 0; p < m->n_point; p++)
     if (d->first[p] != p) d->has_copies[d->first[p]] = 1;
 done:
-  free(on);
   return st;
 }
 
 /* --- triangles at inner surfaces -------------------------------------------
  */
 
-/* Triangles by their first copies, the front sides of inner surfaces and those
- * of other patches that touch them. */
+/* Triangles by their first copies, of pairs only the front, and those that
+ * touch inner surfaces. */
 static vg_status list_triangles(struct vg_doubled *d, size_t *n,
                                 struct vg_error *err)
 {
   const struct vg_mesh *m = d->boundary;
   uint8_t *on = vg_calloc(m->n_point, 1);
+  uint32_t *other = vg_alloc(m->n_tri, sizeof *other);
+  vg_status st = VG_OK;
 
   d->tri = vg_alloc(m->n_tri, sizeof *d->tri);
   d->of = vg_alloc(m->n_tri, sizeof *d->of);
-  if (!on || !d->tri || !d->of) {
-    free(on);
-    return vg_fail_memory(err, "the inner surfaces");
-  }
+  d->back = vg_alloc(m->n_tri, sizeof *d->back);
+  if (!on || !other || !d->tri || !d->of || !d->back)
+    VG_TRY(vg_fail_memory(err, "the inner surfaces"));
+  VG_TRY(vg_mesh_inner_pairs(m, d->first, other, err));
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 3 && !is_inner(m, t, VG_INNER_NOT); k++)
       on[d->first[m->tri[t][k]]] = 1;
@@ -64,50 +57,17 @@ static vg_status list_triangles(struct vg_doubled *d, size_t *n,
     uint32_t v[3];
 
     for (int k = 0; k < 3; k++) v[k] = d->first[m->tri[t][k]];
-    if (is_inner(m, t, VG_INNER_BACK) || !(on[v[0]] | on[v[1]] | on[v[2]]))
+    if (!(on[v[0]] | on[v[1]] | on[v[2]]) ||
+        (is_inner(m, t, VG_INNER_BACK) && other[t] != UINT32_MAX))
       continue;
     memcpy(d->tri[*n], v, sizeof v);
+    d->back[*n] = other[t];
     d->of[(*n)++] = (uint32_t)t;
   }
+done:
   free(on);
-  return VG_OK;
-}
-
-/* Finds the back of every front. */
-static vg_status find_backs(struct vg_doubled *d, size_t n,
-                            struct vg_error *err)
-{
-  const struct vg_mesh *m = d->boundary;
-  struct vg_table table = VG_TABLE_INIT;
-
-  d->back = vg_alloc(n, sizeof *d->back);
-  if (!d->back || vg_table_init(&table, n)) {
-    vg_table_release(&table);
-    return vg_fail_memory(err, "the inner surfaces");
-  }
-  memset(d->back, 0xff, n * sizeof *d->back);
-  for (uint32_t i = 0; i < n; i++) {
-    const struct vg_tri_key key = vg_tri_key(d->tri[i]);
-    uint32_t *at;
-
-    if (!is_inner(m, d->of[i], VG_INNER_FRONT)) continue;
-    VG_TABLE_FIND(&table, at, vg_tri_key_hash(key), 0);
-    *at = i;
-  }
-  for (uint32_t t = 0; t < m->n_tri; t++) {
-    uint32_t v[3], *at;
-    struct vg_tri_key key;
-
-    if (!is_inner(m, t, VG_INNER_BACK)) continue;
-    for (int k = 0; k < 3; k++) v[k] = d->first[m->tri[t][k]];
-    key = vg_tri_key(v);
-    VG_TABLE_FIND(&table, at, vg_tri_key_hash(key),
-                  vg_tri_key_same(vg_tri_key(d->tri[*at]), key));
-    assert(*at != VG_TABLE_FREE);
-    d->back[*at] = t;
-  }
-  vg_table_release(&table);
-  return VG_OK;
+  free(other);
+  return st;
 }
 
 vg_status vg_doubled_new(struct vg_doubled *d, const struct vg_mesh *boundary,
@@ -121,7 +81,6 @@ vg_status vg_doubled_new(struct vg_doubled *d, const struct vg_mesh *boundary,
   d->boundary = boundary;
   VG_TRY(find_copies(d, err));
   VG_TRY(list_triangles(d, &n, err));
-  VG_TRY(find_backs(d, n, err));
   VG_TRY(vg_sides_build(&d->sides, boundary->n_point,
                         (const double(*)[3])boundary->point, n,
                         (const uint32_t(*)[3])d->tri, err));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/doubled.h: a boundary with inner surfaces, which have every
- * triangle twice and most points more than once (core/sides/inner.h).
+ * triangle twice and most points more than once (core/sides/inner.h), except
+ * where layers have separated the two sides.
  *
  * The void is filled as if each of these points occurred once: the first copy
  * stands for all of them in fronts and cells, so that both sides of an inner

@@ -384,8 +384,8 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
           r.n_tri, r.n_point);
   if (r.n_cut)
     vg_note(b->notes,
-            "%zu edges of inner surfaces were cut, because triangles with all "
-            "corners on free edges would have the same points on both sides",
+            "%zu edges of inner surfaces were cut, because triangles or edges "
+            "between free edges would have the same points on both sides",
             r.n_cut);
   if (r.n_sealed)
     vg_note(b->notes,

@@ -609,7 +609,8 @@ static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
   struct vg_layer_row row;
 
   for (size_t i = 0; i < s->n_layer; i++)
-    if (s->layer_row[i].id == id) return &s->layer_row[i];
+    if (s->layer_row[i].id == id && !*s->layer_row[i].id_name)
+      return &s->layer_row[i];
   vg_settings_row_default(VG_TABLE_LAYERS, &row);
   row.id = id;
   if (vg_settings_add(s, VG_TABLE_LAYERS, &row, NULL) < 0) return NULL;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "layers/grow/grow.h"
 #include "run/settings/plan_options.h"
 
@@ -320,11 +321,12 @@ static vg_status make_requests(struct vg_layer_stage *s,
 
   if (l->by_source) VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
   for (size_t i = 0; i < m->n_patch; i++) {
-    struct vg_layer_row row = vg_settings_layer_row(set, m->patch[i].id);
+    struct vg_layer_row own = vg_settings_layer_row(set, m->patch[i].id);
+    struct vg_layer_row row = vg_wall_layer_row(set, m, i);
     struct vg_layer_request *q = &s->request[i];
 
     s->limit[i] = limits_of(&row.limit, &l->limit);
-    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row.limit))
+    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&own.limit))
       st = vg_fail(err, VG_ERR_INPUT,
                    "layers: patch %d has a limit on layers, but it is not a "
                    "wall; set grow to yes or remove the limit",
@@ -374,7 +376,7 @@ static vg_status sort_heights(const struct vg_boundary *b, struct by_point *h,
   h->at.n = from->n;
   memcpy(h->at.item, from->item, from->n * sizeof *from->item);
   for (size_t i = 0; i < m->n_patch; i++) {
-    struct vg_layer_row row = vg_settings_layer_row(s, m->patch[i].id);
+    struct vg_layer_row row = vg_wall_layer_row(s, m, i);
 
     uses[i] = (uint8_t)uses_points(&s->layer, &row);
   }
@@ -401,8 +403,8 @@ static int first_is_known(const struct vg_layer_stage *s,
   const struct vg_layer_settings *l = &b->read->settings.layer;
 
   for (size_t i = 0; i < s->n_patch && !l->by_source; i++) {
-    struct vg_layer_row row = vg_settings_layer_row(&b->read->settings,
-                                                    b->surface.patch[i].id);
+    struct vg_layer_row row = vg_wall_layer_row(&b->read->settings, &b->surface,
+                                                i);
 
     if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0) &&
         !(least[i] > 0))
@@ -598,7 +600,6 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   if (!n_wall) return VG_OK;
   VG_TRY(make_requests(s, b, h, err));
   VG_TRY(extend_walls(s, b, err));
-  VG_TRY(vg_walls_check_inner(&b->surface, s->reason, err));
   note_choice(s, b);
   give_conditions(s, b);
   set_options(s, set);
@@ -626,24 +627,29 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
   return st;
 }
 
-/* Whether layers grow, for each patch of the input. */
+/* Whether layers grow, for each patch of the input and each back of an inner
+ * surface. */
 static vg_status list_grows(const struct vg_layer_stage *s,
                             const struct vg_boundary *b,
                             struct vg_patch_grows **out, size_t *n,
                             struct vg_error *err)
 {
-  struct vg_patch_grows *list = vg_alloc(b->n_row, sizeof *list);
+  const struct vg_mesh *m = &b->surface;
+  struct vg_patch_grows *list = vg_alloc(b->n_row + m->n_patch, sizeof *list);
 
   if (!list) return vg_fail_memory(err, "the patches");
   *n = 0;
-  for (size_t i = 0; s->is_on && i < b->n_row; i++) {
-    size_t at = vg_mesh_find_patch(&b->surface, b->row[i].id);
+  for (size_t i = 0; s->is_on && i < b->n_row + m->n_patch; i++) {
+    const size_t at = i < b->n_row ? vg_mesh_find_patch(m, b->row[i].id)
+                                   : i - b->n_row;
+    size_t like;
 
-    if (at != SIZE_MAX)
-      list[(*n)++] = (struct vg_patch_grows){ b->row[i].id,
-                                              s->reason[at] != VG_WALL_NOT,
-                                              s->reason[at] ==
-                                                VG_WALL_EXTENDED };
+    if (at == SIZE_MAX) continue;
+    if (i >= b->n_row && m->patch[at].inner != VG_INNER_BACK) continue;
+    like = vg_mesh_front_patch(m, at);
+    list[(*n)++] = (struct vg_patch_grows){ m->patch[at].id, m->patch[like].id,
+                                            s->reason[at] != VG_WALL_NOT,
+                                            s->reason[at] == VG_WALL_EXTENDED };
   }
   *out = list;
   return VG_OK;

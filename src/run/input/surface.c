@@ -12,6 +12,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
+#include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
 
 #define SHOWN_PATCHES 20 /* Most patch numbers in a note. */
@@ -537,6 +538,7 @@ vg_status vg_boundary_shape(struct vg_read *read,
   if (*read->settings.baffles) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
     VG_TRY(vg_boundary_take_inner(b, err));
+    VG_TRY(vg_patch_rows_resolve(&read->settings, &b->surface, err));
   }
   vg_boundary_note_slivers(b);
   st = try_shapes(b, o, show, err);

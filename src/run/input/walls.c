@@ -82,7 +82,8 @@ static int is_given(const struct vg_boundary *b, int32_t id)
  * it by mistake. */
 static int is_added(const struct vg_boundary *b, const struct vg_patch *patch)
 {
-  return !is_given(b, patch->id) && (patch->bc == 1 || patch->bc == 3);
+  return !patch->inner && !is_given(b, patch->id) &&
+         (patch->bc == 1 || patch->bc == 3);
 }
 
 /* Number of patches before those that this program added. */
@@ -161,7 +162,6 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
 {
   const struct vg_patch *patch = &b->surface.patch[i];
 
-  if (patch->inner) return VG_WALL_NOT;
   if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
@@ -199,6 +199,30 @@ static vg_status apply_row(const struct vg_boundary *b,
   return VG_OK;
 }
 
+/* The back of an inner surface is as its front, unless a list or the column
+ * grow names it. */
+static void follow_fronts(const struct vg_boundary *b, const uint8_t *wall,
+                          const uint8_t *slip, enum vg_wall_reason *reason)
+{
+  const struct vg_mesh *m = &b->surface;
+
+  for (size_t i = 0; i < m->n_patch; i++) {
+    const struct vg_layer_row row = vg_settings_layer_row(&b->read->settings,
+                                                          m->patch[i].id);
+
+    if (wall[i] || slip[i] || row.grow != VG_ANSWER_AUTO) continue;
+    reason[i] = reason[vg_mesh_front_patch(m, i)];
+  }
+}
+
+struct vg_layer_row vg_wall_layer_row(const struct vg_settings *s,
+                                      const struct vg_mesh *m, size_t i)
+{
+  const size_t front = vg_mesh_front_patch(m, i);
+
+  return vg_settings_layer_row_like(s, m->patch[i].id, m->patch[front].id);
+}
+
 static vg_status by_settings(const struct vg_boundary *b, uint8_t *wall,
                              uint8_t *slip, enum vg_wall_reason *reason,
                              struct vg_error *err)
@@ -223,6 +247,7 @@ static vg_status by_settings(const struct vg_boundary *b, uint8_t *wall,
   }
   for (size_t i = 0; i < s->n_layer; i++)
     VG_TRY(apply_row(b, &s->layer_row[i], wall, slip, reason, err));
+  follow_fronts(b, wall, slip, reason);
 done:
   return st;
 }
@@ -230,61 +255,15 @@ done:
 static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface;
-  int is_sheet = 0;
   char list[600];
 
-  for (size_t i = 0; i < m->n_patch; i++)
-    is_sheet |= m->patch[i].inner && vg_is_viscous(&m->patch[i]);
   vg_patch_list_text(m, n_own(b), list, sizeof list);
   return vg_fail(
     err, VG_ERR_INPUT,
-    "%s: layers are requested, but no patch is known to be a wall%s; name the "
+    "%s: layers are requested, but no patch is known to be a wall; name the "
     "walls with --walls (such as --walls 3-12,wing*), set condition 4 in a "
     ".mapbc or the deck, or turn layers off with --layers no. Patches: %s",
-    b->read->files.stem,
-    is_sheet ? " on which layers grow, since inner surfaces (baffles) get none"
-             : "",
-    list);
-}
-
-static vg_status refuse_inner(const struct vg_mesh *m, const char *why,
-                              size_t i, const double *x, struct vg_error *err)
-{
-  char at[80] = "";
-
-  if (x) snprintf(at, sizeof at, " at (%g, %g, %g)", x[0], x[1], x[2]);
-  return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "patch %d%s%s %s%s: layers next to inner surfaces are not "
-                 "supported; take the patch out of the list walls, or set grow "
-                 "no for it in the table layers",
-                 (int)m->patch[i].id, *m->patch[i].name ? " " : "",
-                 m->patch[i].name, why, at);
-}
-
-vg_status vg_walls_check_inner(const struct vg_mesh *m,
-                               const enum vg_wall_reason *reason,
-                               struct vg_error *err)
-{
-  uint8_t *on = vg_calloc(m->n_point, 1);
-  vg_status st = on ? VG_OK : vg_fail_memory(err, "the patches");
-
-  assert(reason || !m->n_patch);
-  for (size_t i = 0; st >= 0 && i < m->n_patch; i++)
-    if (m->patch[i].inner && reason[i] != VG_WALL_NOT)
-      st = refuse_inner(m,
-                        "is an inner surface, and layers are requested on it",
-                        i, NULL, err);
-  for (size_t t = 0; st >= 0 && t < 3 * m->n_tri; t++)
-    if (m->patch[m->tri_patch[t / 3]].inner) on[m->tri[t / 3][t % 3]] = 1;
-  for (size_t t = 0; st >= 0 && t < 3 * m->n_tri; t++) {
-    const uint32_t patch = m->tri_patch[t / 3], p = m->tri[t / 3][t % 3];
-
-    if (reason[patch] != VG_WALL_NOT && on[p])
-      st = refuse_inner(m, "has layers and touches an inner surface", patch,
-                        m->point[p], err);
-  }
-  free(on);
-  return st;
+    b->read->files.stem, list);
 }
 
 vg_status vg_walls_find(const struct vg_boundary *b,
@@ -322,8 +301,8 @@ vg_status vg_walls_extend(const struct vg_boundary *b,
 
   if (!is_wall) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < m->n_patch; i++) {
-    is_wall[i] = reason[i] != VG_WALL_NOT;
-    may[i] = !is_wall[i] && i < n_own(b) && !m->patch[i].inner &&
+    is_wall[i] = reason[i] != VG_WALL_NOT && !m->patch[i].inner;
+    may[i] = reason[i] == VG_WALL_NOT && i < n_own(b) && !m->patch[i].inner &&
              vg_settings_layer_row(&b->read->settings, m->patch[i].id).grow !=
                VG_ANSWER_NO;
   }

@@ -29,7 +29,8 @@ int vg_is_viscous(const struct vg_patch *p);
 
 /** Finds the walls of a boundary. The layers table decides first, then the
  * lists `walls` and `slip`, then meshing class and condition. If layers are
- * requested, a body without any condition is a wall as a whole.
+ * requested, a body without any condition is a wall as a whole. The back of an
+ * inner surface is a wall if its front is, unless it is named itself.
  *
  * @param reason  out: [b->surface.n_patch]
  * @param n_wall  out
@@ -41,11 +42,10 @@ vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
 
-/** VG_ERR_UNSUPPORTED if layers grow on an inner surface, or on a patch that
- * touches one. reason: [m->n_patch] */
-vg_status vg_walls_check_inner(const struct vg_mesh *m,
-                               const enum vg_wall_reason *reason,
-                               struct vg_error *err);
+/** Row of the layers table for patch i of m. The back of an inner surface
+ * without a row has that of its front, with its own number. */
+struct vg_layer_row vg_wall_layer_row(const struct vg_settings *s,
+                                      const struct vg_mesh *m, size_t i);
 
 /** Finds patches without layers in the plane of a wall, over which the layers
  * of the wall continue (vg_slides_extend). Patches with `grow` no in the layers

@@ -263,6 +263,18 @@ static size_t *each_unset(size_t n)
   return of;
 }
 
+/* Whether a name of the table layers may be that of the back of an inner
+ * surface, which the surface does not have yet. */
+static int may_be_back(enum vg_table_kind kind, const struct vg_settings *s,
+                       const char *name, const struct vg_mesh *m)
+{
+  if (kind != VG_TABLE_LAYERS || !*s->baffles || !*name) return 0;
+  for (size_t k = 0; k < m->n_patch; k++)
+    if (m->patch[k].inner || vg_patch_name_matches(name, m->patch[k].name))
+      return 0;
+  return 1;
+}
+
 /* Add row i of `old` to s, once for each patch that its name matches. */
 static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
                              const struct vg_settings *old, size_t i,
@@ -280,7 +292,8 @@ static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
   memcpy(&row, vg_settings_row(old, kind, i), t->row_size);
   r = ref_of(kind, &row);
   memset(on, 0, m->n_patch);
-  if (!*r.name && vg_mesh_find_patch(m, *r.id) == SIZE_MAX)
+  if (may_be_back(kind, old, r.name, m) ||
+      (!*r.name && vg_mesh_find_patch(m, *r.id) == SIZE_MAX))
     return vg_settings_add(s, kind, &row, err); /* rejected where it is used */
   VG_TRY(vg_patch_ref_mark(t->name, *r.id, r.name, m, m->n_patch, on, err));
   *r.name = 0;

@@ -52,7 +52,9 @@ vg_status vg_patch_ref_mark(const char *what, int32_t id, const char *name,
 /** Replace the rows of the tables `patches` and `layers` that have names by
  * rows with numbers, one for each patch that matches the name. Rows with
  * numbers are kept, so a second call has no effect. Names in the table `layers`
- * refer to the names that the table `patches` assigns.
+ * refer to the names that the table `patches` assigns. With the setting
+ * `baffles`, a name there that matches no patch stays until m has the backs of
+ * inner surfaces.
  * VG_ERR_INPUT for a name that matches no patch, and for a patch with two rows;
  * the message names both. */
 vg_status vg_patch_rows_resolve(struct vg_settings *s, const struct vg_mesh *m,

@@ -22,6 +22,18 @@ struct vg_layer_row vg_settings_layer_row(const struct vg_settings *s,
   return row;
 }
 
+struct vg_layer_row vg_settings_layer_row_like(const struct vg_settings *s,
+                                               int32_t id, int32_t like)
+{
+  struct vg_layer_row row;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].id == id) return s->layer_row[i];
+  row = vg_settings_layer_row(s, like);
+  row.id = id;
+  return row;
+}
+
 double vg_settings_first(const struct vg_layer_settings *l, double first,
                          double y_plus)
 {
@@ -109,7 +121,8 @@ static vg_status resolve_layers(const struct vg_settings *read,
   s->n_layer = 0;
   *l->walls = *l->slip = 0;
   for (size_t i = 0; i < d->n_grows && st >= 0; i++) {
-    struct vg_layer_row row = vg_settings_layer_row(read, d->grows[i].id);
+    struct vg_layer_row row = vg_settings_layer_row_like(read, d->grows[i].id,
+                                                         d->grows[i].like);
 
     if (d->grows[i].is_extended) {
       st = add_slip(l, d->grows[i].id, err);

@@ -27,6 +27,7 @@ struct vg_resolved {
 /** Whether layers grow on a patch. */
 struct vg_patch_grows {
   int32_t id;
+  int32_t like; /* The patch whose row applies if id has none. */
   int grows;
   int
     is_extended; /* 1: it is no wall, but layers of a wall continue over it. */
@@ -72,6 +73,11 @@ void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX]);
  * every value to the global settings. */
 struct vg_layer_row vg_settings_layer_row(const struct vg_settings *s,
                                           int32_t id);
+
+/** The row of patch id or, if it has none, that of patch `like` with its number
+ * replaced. */
+struct vg_layer_row vg_settings_layer_row_like(const struct vg_settings *s,
+                                               int32_t id, int32_t like);
 
 /** `first` if it is given, else the height that follows from y_plus; 0 if
  * neither is known. */

@@ -112,16 +112,81 @@ for way in $ways; do
   exits 0
 done
 
-# Layers grow on walls that no inner surface touches.
+# --- layers ------------------------------------------------------------------
+
+# full FILE PATCH: share of its faces with all layers, in percent.
+full() { awk -v patch="$2" '$2 == patch && NF > 6 { print $4; exit }' "$1"; }
+
+# On walls only, where they touch a sheet or not; on a sheet that stands on
+# walls; where sheets meet; on everything. All faces of the tall sheet but those
+# at its free edge have all layers.
 duct free "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5"
+duct tall "tall 8 6  0.5 0 0  0 1 0  0 0 0.75"
 valid free --baffles disk --walls 'w*' --first 0.004
-vanguard mesh fin.stl --flow internal --baffles fin --walls 'w*' --first 0.004
+valid fin --baffles fin --walls 'w*' --first 0.004
+valid both --baffles fin,plate --first 0.004 --cells mixed
+valid both --baffles fin,plate --walls '*' --first 0.004 --cells hex
+vanguard mesh tall.stl --flow internal --baffles tall --first 0.004 \
+  --layer-count 5 --hmax 0.12 --write b8.ugrid --out tall
+exits 0
+for patch in tall tall_back; do
+  [ "$(full out $patch)" = 83.33 ] || fail "layers of $patch"
+done
+vanguard check tall/tall.b8.ugrid
+exits 0
+
+# A sheet without layers ends in a side of the duct in which columns of the
+# floor slide: the side is remeshed around it, and the floor has all layers.
+duct side "fin 4 4  0.5 0 0.25  0 0.5 0  0 0 0.5"
+vanguard mesh side.stl --flow internal --baffles fin --walls w1 --first 0.004 \
+  --hmax 0.12 --write b8.ugrid --out side
+exits 0
+[ "$(full out w1)" = 100.00 ] || fail "layers next to a slit"
+vanguard check side/side.b8.ugrid
+exits 0
+says out "valid"
+
+# The back is as the front, unless a list or a row of the table names it.
+cat >tall.deck <<'END'
+sheet
+
+layers
+id count
+tall 6
+tall_back 3
+END
+vanguard mesh tall.stl --flow internal --baffles tall --walls 'tall,w1'   --first 0.004 --hmax 0.12 --write b8.ugrid --out sides
+exits 0
+[ "$(full out tall)" = 83.33 ] && [ "$(full out tall_back)" = 83.33 ] ||
+  fail "layers of both sides"
+mkdir rerun
+cp tall.stl rerun
+cp sides/tall.resolved.deck rerun/tall.deck
+vanguard mesh rerun/tall.stl --write b8.ugrid --out resolved
+exits 0
+same sides/tall.b8.ugrid resolved/tall.b8.ugrid
+sed -i s/tall_back/tall_front/ tall.deck
+vanguard mesh tall.stl --flow internal --baffles tall --first 0.004
 exits 1
-says err "patch 1 w1 has layers and touches an inner surface at (0.5, "
-vanguard mesh free.stl --flow internal --baffles disk --walls 'w*,disk' \
-  --first 0.004
-exits 1
-says err "patch 7 disk is an inner surface, and layers are requested on it"
+says err "no patch of the surface is named 'tall_front'"
+rm tall.deck
+vanguard mesh tall.stl --flow internal --baffles tall --slip tall_back   --first 0.004 --hmax 0.12 --write b8.ugrid --out one
+exits 0
+[ -n "$(full out tall)" ] && [ -z "$(full out tall_back)" ] ||
+  fail "layers of one side"
+vanguard check one/tall.b8.ugrid
+exits 0
+
+# Same bytes with threads, in any decomposition.
+for way in $ways; do
+  for threads in 1 3; do
+    vanguard mesh both.stl --flow internal --quiet --baffles fin,plate       --walls '*' --first 0.004 --decompose $way --leaf-cells 3000       --hmax 0.08 --threads $threads --write b8.ugrid --out layers$way$threads
+    exits 0
+  done
+  same layers${way}1/both.b8.ugrid layers${way}3/both.b8.ugrid
+  vanguard check layers${way}1/both.b8.ugrid
+  exits 0
+done
 
 # --- refused -----------------------------------------------------------------
 
@@ -180,11 +245,6 @@ sed -i '/solid w6/,/endsolid w6/d' open.stl
 vanguard check open.stl --baffles fin
 exits 1
 lacks err "wrap"
-cp fin.stl viscous.stl
-printf 'sheet\n\npatches\nid bc\nfin 4\nw* 5\n' >viscous.deck
-vanguard mesh viscous.stl --flow internal --baffles fin --first 0.004
-exits 1
-says err "inner surfaces (baffles) get none"
 vanguard check o_fin/fin.b8.ugrid --baffles fin
 exits 0
 says out "baffles has no effect on a volume mesh"
