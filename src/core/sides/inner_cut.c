@@ -8,26 +8,35 @@
 #include "core/geometry/vector.h"
 #include "core/sides/inner_parts.h"
 
-/* Do both sides of triangle t have the same points? */
+/* Would both sides of triangle t, through which no fluid passes, have the same
+ * points? */
 static int is_same(const struct vg_inner_work *s, size_t t)
 {
   const uint32_t *sector = s->sides.sector + 6 * t;
+  int n = 0;
 
-  return vg_is_sheet(s, t) && sector[0] == sector[3] &&
-         sector[1] == sector[4] && sector[2] == sector[5];
+  if (!vg_is_sheet(s, t) || vg_is_passed(s, t)) return 0;
+  for (int k = 0; k < 3; k++) n += s->room[sector[k]] == s->room[sector[3 + k]];
+  return n == 3;
 }
 
 /* Rank of half-edge h for a cut: edges of sheets alone before those of walls;
- * free edges have none. */
+ * free edges have none, nor have those at which the mesh passes around the
+ * triangle. */
 static int rank_of(const struct vg_inner_work *s, uint32_t h)
 {
   const size_t i = s->sides.edge.of_half[h];
   const uint32_t n = vg_edges_count(&s->sides.edge, i);
-  int rank = n > 1 ? 2 : 0;
+  uint32_t n_solid = 0;
+  int has_wall = 0;
 
-  for (uint32_t k = 0; k < n && rank; k++)
-    if (!vg_is_sheet(s, vg_edges_at(&s->sides.edge, i)[k] / 3)) rank = 1;
-  return rank;
+  for (uint32_t k = 0; k < n; k++) {
+    const uint32_t t = vg_edges_at(&s->sides.edge, i)[k] / 3;
+
+    n_solid += !vg_is_passed(s, t);
+    has_wall |= !vg_is_sheet(s, t);
+  }
+  return n_solid < 2 ? 0 : has_wall ? 1 : 2;
 }
 
 /* The half-edge of triangle t to cut; UINT32_MAX: all are free. */
