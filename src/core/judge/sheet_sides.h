@@ -9,7 +9,7 @@
 
 struct vg_sheet_sides;
 
-/** What was found about a sheet. */
+/** Findings about a sheet. */
 struct vg_sheet_report {
   uint64_t n_tri;
   uint64_t n_cell[2]; /* cells on the side of the normals, and on the other
@@ -19,7 +19,7 @@ struct vg_sheet_report {
 };
 
 /** Enter the sheets of m, which stay in use until vg_sheet_sides_free. *out is
- * NULL if there are none. O(n_sheet_tri). VG_ERR_MEMORY. */
+ * NULL without sheets. O(n_sheet_tri). VG_ERR_MEMORY. */
 vg_status vg_sheet_sides_new(const struct vg_mesh *m,
                              struct vg_sheet_sides **out, struct vg_error *err);
 

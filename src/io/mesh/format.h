@@ -63,8 +63,8 @@ int vg_format_holds_cells(const char *path);
 int vg_format_holds_sheets(const char *suffix);
 
 /** *out: the file with the sheets of a .ugrid, in the same folder
- * (io/stream/sheet_file.h); "" if there is none, and for other formats. To be
- * freed. VG_ERR_MEMORY. */
+ * (io/stream/sheet_file.h); "" without such a file, and for other formats. To
+ * be freed. VG_ERR_MEMORY. */
 vg_status vg_format_sheet_file(const char *path, char **out,
                                struct vg_error *err);
 

@@ -80,7 +80,7 @@ struct vg_inner_faces {
  * (Gmsh) or of two kinds of cells (Mmg). The order of faces and patches is
  * kept. Indices must be valid. O(n) time; memory O(points + boundary).
  * @param m      without sheets
- * @param found  all zero if there are none
+ * @param found  all zero without such faces
  * VG_ERR_MEMORY: the mesh is unchanged. */
 vg_status vg_mesh_take_inner(struct vg_mesh *m, struct vg_inner_faces *found,
                              struct vg_error *err);

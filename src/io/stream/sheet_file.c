@@ -61,7 +61,7 @@ int vg_sheet_file_is_own(const char *path)
 
 /* --- read ----------------------------------------------------------------- */
 
-/* What has been read. */
+/* Sheets and triangles read so far. */
 struct reading {
   struct vg_input *in;
   const struct vg_mesh *m;

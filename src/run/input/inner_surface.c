@@ -260,7 +260,8 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   if (*list)
     snprintf(
       text, size,
-      "; if fluid is on both sides of its open sheets, give --baffles %s",
+      "; if fluid is on both sides of its open sheets, give --baffles %s (or "
+      "--sheets)",
       list);
   return *list != 0;
 }

@@ -63,10 +63,10 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   const struct vg_settings *s,
                                   struct vg_error *err);
 
-/** Writes the sheets of m to STEM.sheets, which is added to the files. If there
- * are none and a .ugrid is among the files, with which it would be read, such a
- * file of an earlier mesh is removed by vg_outputs_commit. On rank 0, after the
- * files of the mesh have been written.
+/** Writes the sheets of m to STEM.sheets, which is added to the files. If m has
+ * no sheets and a .ugrid is among the files, with which it would be read, such
+ * a file of an earlier mesh is removed by vg_outputs_commit. On rank 0, after
+ * the files of the mesh have been written.
  *
  * @param n_point, n_cell  of the whole mesh */
 vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,

@@ -52,6 +52,16 @@ same o_roles/roles.b8.ugrid again/roles.b8.ugrid
 valid disk --sheets disk --walls 'w*' --first 0.004 --cells mixed
 says out "7            32            32            32       0.25  disk"
 
+# The example: a disk in front of a sphere.
+vanguard demo disk --cells 20000 --out demo
+exits 0
+vanguard mesh -p demo/disk --quiet --write b8.ugrid
+exits 0
+vanguard check demo/disk.b8.ugrid
+exits 0
+says out "  disk"
+says out "connected regions: 1"
+
 # Same bytes with threads and in any decomposition.
 ways="advancing octree"
 vanguard --version --verbose
