@@ -10,6 +10,7 @@
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/stream/sheet_file.h"
+#include "run/commit/tree.h"
 
 /* Adds every other triangle between cells as a sheet, with the names of two
  * sheets. */
@@ -219,6 +220,7 @@ static void zones_of_faces(void **state)
   (void)state;
   make(&m);
   snprintf(path, sizeof path, "%s", io_temp("sheets.openfoam"));
+  vg_tree_remove(path);
   assert_int_equal(vg_foam_write(path, &m, NULL, NULL), VG_OK);
   snprintf(path, sizeof path, "%s/constant/polyMesh/faceZones",
            io_temp("sheets.openfoam"));
@@ -226,6 +228,7 @@ static void zones_of_faces(void **state)
   assert_non_null(memmem(text, size, "    disk\n", 9));
   assert_non_null(memmem(text, size, "    wake\n", 9));
   free(text);
+  vg_tree_remove(io_temp("sheets.openfoam"));
   vg_mesh_release(&m);
 }
 

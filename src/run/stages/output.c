@@ -309,7 +309,7 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   if (!hits_input(o, p, "mapbc")) return VG_OK;
   st = vg_mapbc_read(p->read.files.mapbc, &bc, err);
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
-    int found = 0;
+    int found = m->patch[i].is_sheet; /* no part of the boundary */
 
     for (size_t j = 0; j < bc.n; j++) found |= bc.entry[j].id == m->patch[i].id;
     if (!found)
