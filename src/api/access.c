@@ -53,6 +53,8 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
   n.n_patch = s->boundary->n_patch;
   n.n_hex = s->n_cell[VG_SLICE_HEX];
   n.n_layer_hex = s->n_layer_cell[VG_SLICE_HEX];
+  n.n_sheet_tri = s->boundary->n_sheet_tri;
+  n.n_sheet = s->boundary->n_sheet;
   return vg_job_status(vg_job_give(job, out, &n, sizeof n));
 }
 
@@ -111,6 +113,31 @@ const uint32_t *vanguard_quad_patches(const vanguard_job *job)
 {
   VG_JOB_ASK(job, NULL);
   return boundary_of(job)->quad_patch;
+}
+
+vanguard_status vanguard_sheet(vanguard_job *job, size_t i,
+                               struct vanguard_patch *out)
+{
+  VG_JOB_CALL(job);
+  struct vg_mesh sheets = VG_MESH_INIT;
+  vg_status st = vg_job_meshed(job);
+
+  if (st < 0) return vg_job_status(st);
+  sheets.n_patch = job->run.slices.boundary->n_sheet;
+  sheets.patch = job->run.slices.boundary->sheet;
+  return vg_job_status(vg_job_give_patch(job, &sheets, i, out));
+}
+
+const uint32_t *vanguard_sheet_triangles(const vanguard_job *job)
+{
+  VG_JOB_ASK(job, NULL);
+  return (const uint32_t *)boundary_of(job)->sheet_tri;
+}
+
+const uint32_t *vanguard_sheet_numbers(const vanguard_job *job)
+{
+  VG_JOB_ASK(job, NULL);
+  return boundary_of(job)->sheet_of;
 }
 
 /* --- figures ------------------------------------------------------------- */

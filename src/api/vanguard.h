@@ -458,6 +458,8 @@ struct vanguard_counts {
   uint64_t n_layer_tet, n_layer_pyr, n_layer_pri;
   size_t n_patch;
   uint64_t n_hex, n_layer_hex;
+  uint64_t n_sheet_tri; /* faces of sheets, each between two cells */
+  size_t n_sheet;
 };
 VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
                                             struct vanguard_counts *out);
@@ -472,6 +474,14 @@ VANGUARD_API const uint32_t *vanguard_triangles(const vanguard_job *job);
 VANGUARD_API const uint32_t *vanguard_triangle_patches(const vanguard_job *job);
 VANGUARD_API const uint32_t *vanguard_quads(const vanguard_job *job);
 VANGUARD_API const uint32_t *vanguard_quad_patches(const vanguard_job *job);
+
+/** Sheets, which are no part of the boundary, as boundary faces above: number
+ * and name of a sheet i < n_sheet, point numbers [n_sheet_tri][3] of its faces,
+ * of any orientation, and the sheet of each face. */
+VANGUARD_API vanguard_status vanguard_sheet(vanguard_job *job, size_t i,
+                                            struct vanguard_patch *out);
+VANGUARD_API const uint32_t *vanguard_sheet_triangles(const vanguard_job *job);
+VANGUARD_API const uint32_t *vanguard_sheet_numbers(const vanguard_job *job);
 
 /** Copy the whole mesh into arrays of the caller: xyz [n_point][3],
  * tet [n_tet][4], pyr [n_pyr][5] and pri [n_pri][6]. Arrays that are NULL are

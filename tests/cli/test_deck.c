@@ -137,7 +137,7 @@ static void everything_survives_a_round_trip(void **state)
                                  NAN,
                                  NAN,
                                  { NAN, NAN, NAN } };
-  struct vg_patch_row patch = { -7, 4000, 1, "left wing", "" };
+  struct vg_patch_row patch = { -7, 4000, 1, VG_PATCH_SHEET, "left wing", "" };
   struct vg_layer_row layer = {
     -7,  VG_ANSWER_YES, 1e-5, 1.15,
     NAN, NAN,           NAN,  30,

@@ -7,9 +7,11 @@
 #include "core/surface/surface_check.h"
 #include "fill_shapes.h"
 
-/* Doubles patch `front`, the last one; its back is added. */
-static inline vg_status put_back(struct vg_mesh *m, struct vg_inner_report *r,
-                                 struct vg_error *err)
+/* Adds the back of patch `front`, the last one, and both sides of its
+ * triangles; is_sheet: the mesh continues through it. */
+static inline vg_status put_sides(struct vg_mesh *m, int is_sheet,
+                                  struct vg_inner_report *r,
+                                  struct vg_error *err)
 {
   uint8_t is_inner[9] = { 0 };
   uint32_t back[9] = { 0 };
@@ -20,7 +22,14 @@ static inline vg_status put_back(struct vg_mesh *m, struct vg_inner_report *r,
   back[front] = (uint32_t)vg_mesh_add_patch(m, 50, "sheet_back");
   m->patch[front].inner = VG_INNER_FRONT;
   m->patch[front + 1].inner = VG_INNER_BACK;
+  m->patch[front].is_sheet = m->patch[front + 1].is_sheet = is_sheet;
   return vg_inner_double(m, is_inner, back, r, err);
+}
+
+static inline vg_status put_back(struct vg_mesh *m, struct vg_inner_report *r,
+                                 struct vg_error *err)
+{
+  return put_sides(m, 0, r, err);
 }
 
 /* A parallelogram of n x n quadrilaterals from o along u and v. */

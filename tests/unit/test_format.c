@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "mixed_support.h"
 
+#include "core/mesh/sheets.h"
 #include "io/mesh/format.h"
 #include "io/stream/convention.h"
 #include "io/vgrid/vgrid.h"
@@ -333,7 +334,7 @@ static size_t list_inner(struct vg_mesh *m, uint32_t *random)
   return n_inner;
 }
 
-static void inner_faces_are_removed(void **state)
+static void inner_faces_become_sheets(void **state)
 {
   uint32_t random = 7;
 
@@ -346,13 +347,18 @@ static void inner_faces_are_removed(void **state)
     mixed_make(&m, 1 + turn % 4, 1 + turn % 3);
     assert_int_equal(vg_mesh_copy(&want, &m, NULL), VG_OK);
     n = list_inner(&m, &random);
-    assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
-    assert_int_equal(found.n_face, n);
-    if (n > 1) assert_non_null(strstr(found.patches, "interface ("));
+    assert_int_equal(vg_mesh_take_inner(&m, &found, NULL), VG_OK);
+    assert_int_equal(found.n_face + found.n_sheet_face, n);
+    assert_int_equal(m.n_sheet_tri, found.n_sheet_face);
+    if (found.n_face) assert_non_null(strchr(found.patches, '('));
+    for (size_t i = 0; i < m.n_sheet; i++) assert_true(m.sheet[i].is_sheet);
+    for (size_t t = 0; t < m.n_sheet_tri; t++)
+      assert_true(m.sheet_of[t] < m.n_sheet);
+    vg_mesh_drop_sheets(&m);
     if (n < 2) m.n_patch = 3; /* patch 3 had no faces at all */
     io_same(&want, &m, 1);
-    assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
-    assert_int_equal(found.n_face, 0);
+    assert_int_equal(vg_mesh_take_inner(&m, &found, NULL), VG_OK);
+    assert_int_equal(found.n_face + found.n_sheet_face, 0);
     assert_string_equal(found.patches, "");
     vg_mesh_release(&m);
     vg_mesh_release(&want);
@@ -370,7 +376,7 @@ static void faces_of_overlapping_cells_remain(void **state)
   io_make_t1(&m, 1);
   m.tet = realloc(m.tet, 2 * sizeof *m.tet);
   memcpy(m.tet[m.n_tet++], m.tet[0], sizeof *m.tet);
-  assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
+  assert_int_equal(vg_mesh_take_inner(&m, &found, NULL), VG_OK);
   assert_int_equal(found.n_face, 0);
   assert_int_equal(m.n_tri, 4);
   vg_mesh_release(&m);
@@ -385,7 +391,7 @@ int main(void)
     cmocka_unit_test(the_mapbc_in_the_same_folder_is_used),
     cmocka_unit_test(the_mapbc_of_a_run_is_no_input),
     cmocka_unit_test(surface_files_omit_inner_points),
-    cmocka_unit_test(inner_faces_are_removed),
+    cmocka_unit_test(inner_faces_become_sheets),
     cmocka_unit_test(faces_of_overlapping_cells_remain),
     cmocka_unit_test(reads_the_real_project),
     cmocka_unit_test(reads_real_surfaces),

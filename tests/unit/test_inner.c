@@ -7,6 +7,7 @@
 
 #include "core/mesh/copies.h"
 #include "core/mesh/edges.h"
+#include "core/mesh/sheets.h"
 #include "partition/discrete/discrete.h"
 #include "partition/graph/graph.h"
 #include "partition/octree/octree.h"
@@ -137,6 +138,69 @@ static void a_wall_across(void **state)
   expect(&m, &r, 32, 0, 25);
   assert_int_equal(r.n_sealed, 1);
   assert_int_equal(r.n_near, 0);
+  vg_mesh_release(&m);
+}
+
+/* The mesh continues through it: no point is copied, no edge cut, nothing
+ * sealed. Without its triangles the boundary is the box. */
+static void a_sheet_that_the_mesh_passes(void **state)
+{
+  const double o[3] = { -1, -1, 0 }, u[3] = { 2, 0, 0 }, v[3] = { 0, 2, 0 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+  size_t n_tri;
+
+  (void)state;
+  memset(&m, 0, sizeof m);
+  shape_box(&m, 4, 1);
+  n_tri = m.n_tri;
+  add_sheet(&m, o, u, v, 4);
+  assert_int_equal(put_sides(&m, 1, &r, NULL), VG_OK);
+  expect(&m, &r, 32, 0, 0);
+  assert_int_equal(r.n_sealed, 0);
+  assert_int_equal(vg_mesh_part_sheets(&m, NULL), VG_OK);
+  assert_int_equal(m.n_tri, n_tri);
+  assert_int_equal(m.n_sheet, 1);
+  assert_int_equal(m.n_sheet_tri, 32);
+  assert_int_equal(m.sheet[0].id, 40);
+  assert_true(fabs(vg_mesh_sheet_area(&m, 0) - 4) < 1e-12);
+  assert_int_equal(vg_mesh_find_patch(&m, 40), SIZE_MAX);
+  assert_int_equal(vg_mesh_find_patch(&m, 50), SIZE_MAX);
+  assert_int_equal(vg_mesh_open_edges(&m), 0);
+  vg_mesh_release(&m);
+}
+
+/* A baffle of 4 x 4 whose edge at x = 0 is continued by a sheet: the fluid
+ * passes behind that edge as around a free one. */
+static void a_sheet_behind_a_baffle(void **state)
+{
+  const double o[3] = { -.5, -.5, .1 }, w[3] = { 0, -.5, .1 };
+  const double h[3] = { .5, 0, 0 };
+  uint8_t is_inner[11] = { 0 };
+  uint32_t back[11] = { 0 };
+  struct vg_inner_report r;
+  struct vg_mesh m;
+  size_t baffle, sheet;
+
+  (void)state;
+  memset(&m, 0, sizeof m);
+  shape_box(&m, 4, 1);
+  add_sheet(&m, o, h, y, 4);
+  baffle = m.n_patch - 1;
+  m.patch[baffle].id = 41;
+  add_sheet(&m, w, h, y, 4);
+  sheet = m.n_patch - 1;
+  back[baffle] = (uint32_t)vg_mesh_add_patch(&m, 50, "baffle_back");
+  back[sheet] = (uint32_t)vg_mesh_add_patch(&m, 51, "sheet_back");
+  is_inner[baffle] = is_inner[sheet] = 1;
+  m.patch[baffle].inner = m.patch[sheet].inner = VG_INNER_FRONT;
+  m.patch[back[baffle]].inner = m.patch[back[sheet]].inner = VG_INNER_BACK;
+  m.patch[sheet].is_sheet = m.patch[back[sheet]].is_sheet = 1;
+  assert_int_equal(vg_surface_merge_points(&m, NULL), VG_OK);
+  assert_int_equal(vg_inner_double(&m, is_inner, back, &r, NULL), VG_OK);
+  /* the nine inner points of the baffle, and the middles of cut edges */
+  expect(&m, &r, r.n_tri, r.n_cut, 9 + r.n_cut);
+  assert_int_equal(r.n_sealed, 0);
   vg_mesh_release(&m);
 }
 
@@ -279,6 +343,8 @@ int main(void)
     cmocka_unit_test(a_sheet_on_a_wall),
     cmocka_unit_test(a_sheet_on_one_edge),
     cmocka_unit_test(a_wall_across),
+    cmocka_unit_test(a_sheet_that_the_mesh_passes),
+    cmocka_unit_test(a_sheet_behind_a_baffle),
     cmocka_unit_test(sheets_near_walls),
     cmocka_unit_test(edges_that_pass),
     cmocka_unit_test(sheets_outside),

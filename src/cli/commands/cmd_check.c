@@ -20,8 +20,7 @@
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
 
-#define NO_BAFFLES                                                             \
-  "baffles has no effect on a volume mesh, whose inner surfaces have two sides"
+#define NO_INNER " has no effect on a volume mesh, which has them already"
 
 struct arguments {
   struct vg_cli_one one;
@@ -166,29 +165,38 @@ struct findings {
   const struct vg_mesh *m;
   const struct vg_read_info *info;
   struct vg_mesh_report quality;
+  struct vg_sheet_report *sheets; /* [m->n_sheet] */
   int has_accuracy;
   struct vg_accuracy_report accuracy;
 };
+
+/* The setting for inner surfaces that was given in vain, or NULL. */
+static const char *inner_setting(const struct vg_problem *p)
+{
+  return *p->asked.baffles ? "baffles" : *p->asked.sheets ? "sheets" : NULL;
+}
 
 static void put_json(const struct arguments *a, const struct vg_problem *p,
                      const struct findings *f, const struct vg_error *err)
 {
   const struct vg_mesh_report *r = &f->quality;
-  json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o s:o}", "vanguard",
-                        VG_VERSION, "file", vg_text_json(a->one.file), "ok",
-                        r->is_valid, "cells_turned",
-                        (json_int_t)f->info->turned.cell, "inner_faces",
-                        (json_int_t)f->info->inner.n_face, "size",
-                        vg_report_size_json(f->m), "patches",
-                        vg_report_patches_json(f->m), "mesh",
-                        vg_report_mesh_json(r, f->m), "limits_missed",
-                        vg_report_mesh_limits_json(&p->asked, r));
+  json_t *o = json_pack(
+    "{s:s s:o s:b s:I s:I s:o s:o s:o s:o}", "vanguard", VG_VERSION, "file",
+    vg_text_json(a->one.file), "ok", r->is_valid, "cells_turned",
+    (json_int_t)f->info->turned.cell, "inner_faces",
+    (json_int_t)(f->info->inner.n_face + f->info->inner.n_sheet_face), "size",
+    vg_report_size_json(f->m), "patches", vg_report_patches_json(f->m), "mesh",
+    vg_report_mesh_json(r, f->m), "limits_missed",
+    vg_report_mesh_limits_json(&p->asked, r));
 
+  if (f->sheets)
+    json_object_set_new(o, "sheets", vg_report_sheets_json(f->m, f->sheets));
   if (f->has_accuracy)
     json_object_set_new(o, "accuracy",
                         vg_report_accuracy_json(&f->accuracy, f->m));
-  if (*p->asked.baffles)
-    json_object_set_new(o, "notes", json_pack("[s]", NO_BAFFLES));
+  if (inner_setting(p))
+    json_object_set_new(o, "notes",
+                        json_pack("[s+]", inner_setting(p), NO_INNER));
   if (!r->is_valid) vg_report_error_json(o, err);
   print_json(o, a);
 }
@@ -203,13 +211,14 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   vg_report_size_text(stdout, f->m);
   if (vg_report_patches_text(stdout, f->m, NULL) < 0)
     return vg_fail_memory(err, "the patches");
+  vg_report_sheets_text(stdout, f->m, f->sheets);
   if (turned->cell)
     printf("  cells of negative volume, mirrored on reading: %zu\n",
            turned->cell);
   if (inner->n_face)
     printf("  note: " VG_INNER_FACES_NOTE "\n", a->one.file, inner->n_face,
            inner->patches);
-  if (*p->asked.baffles) printf("  note: %s\n", NO_BAFFLES);
+  if (inner_setting(p)) printf("  note: %s" NO_INNER "\n", inner_setting(p));
   for (size_t i = 0; a->sizes && i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);
   vg_report_mesh_text(stdout, &f->quality, 1);
@@ -228,6 +237,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   vg_status st;
 
   VG_TRY(judge(a, p, m, &f.quality, err));
+  VG_TRY(vg_sheet_sides_judge(m, &f.sheets, err));
   if (a->with_accuracy && r->is_valid) {
     VG_TRY(vg_check_accuracy(&p->asked, m, &f.accuracy, err));
     f.has_accuracy = 1;
@@ -240,6 +250,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   fflush(stdout);
   vg_report_mesh_limits_text(stderr, &p->asked, r);
 done:
+  free(f.sheets);
   vg_accuracy_release(&f.accuracy);
   return st;
 }

@@ -19,6 +19,7 @@
 #include "io/slices/slices.h"
 #include "io/slices/ugrid_slices.h"
 #include "io/stream/patch_words.h"
+#include "io/stream/sheet_file.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
@@ -77,6 +78,7 @@ struct conversion {
   struct vg_read_info info;
   size_t n_cell, n_layer; /* n_layer: layer tetrahedra; 0: none, or unknown */
   char *file, *mapbc;     /* files written; mapbc: NULL without one */
+  char *sheets;           /* file with the sheets, or NULL */
   const char *suffix;     /* of the format written */
   struct vg_outputs outputs;
   struct vg_foam_options foam;
@@ -158,6 +160,13 @@ static vg_status choose(struct conversion *c, struct vg_error *err)
   return VG_OK;
 }
 
+/* The points of a .cogsg are in another order than those of the mesh, to which
+ * STEM.sheets refers. */
+static int is_reordered(const struct conversion *c)
+{
+  return !strcmp(c->suffix, "cogsg");
+}
+
 /* --- what is lost -------------------------------------------------------- */
 
 static size_t count_codes(const struct vg_mesh *m)
@@ -226,6 +235,21 @@ static void note_mesh(struct conversion *c)
   if (c->info.inner.n_face)
     vg_note(&c->notes, VG_INNER_FACES_NOTE, c->a->in, c->info.inner.n_face,
             c->info.inner.patches);
+  if (m->n_sheet && !(c->what & CELLS))
+    vg_note(&c->notes,
+            ".%s holds surfaces: %zu triangles of sheets are omitted",
+            c->suffix, m->n_sheet_tri);
+  else if (m->n_sheet && is_reordered(c))
+    vg_note(&c->notes,
+            ".%s has no faces between cells: %zu triangles of sheets are lost",
+            c->suffix, m->n_sheet_tri);
+  if (m->n_sheet && (!strcmp(c->suffix, "mesh") || !strcmp(c->suffix, "meshb")))
+    vg_note(&c->notes, ".%s has no names: those of %zu sheets are lost",
+            c->suffix, m->n_sheet);
+  if (c->sheets)
+    vg_note(&c->notes,
+            ".%s has no faces between cells: %zu triangles of sheets are in %s",
+            c->suffix, m->n_sheet_tri, c->sheets);
   if (c->info.turned.cell)
     vg_note(&c->notes, "%zu cells of negative volume were mirrored",
             c->info.turned.cell);
@@ -314,6 +338,23 @@ static void check_ids(struct conversion *c)
   for (size_t p = 0; p < c->mesh.n_patch; p++)
     if (c->mesh.patch[p].id <= 0 || c->mesh.patch[p].id == INT32_MAX)
       c->what &= ~IDS;
+}
+
+/* --- sheets -------------------------------------------------------------- */
+
+/* The sheets in STEM.sheets, for formats that do not hold them. */
+static vg_status write_sheets(struct conversion *c, struct vg_error *err)
+{
+  const struct vg_mesh *m = &c->mesh;
+
+  if (!(c->what & CELLS) || !c->n_cell || vg_format_holds_sheets(c->suffix) ||
+      is_reordered(c))
+    return VG_OK;
+  if (m->n_sheet_tri) {
+    c->sheets = vg_outputs_final(&c->outputs, VG_SHEET_SUFFIX);
+    if (!c->sheets) return vg_fail_memory(err, "a file name");
+  }
+  return vg_outputs_sheets(&c->outputs, m, m->n_point, c->n_cell, err);
 }
 
 /* --- steps --------------------------------------------------------------- */
@@ -486,6 +527,7 @@ static vg_status convert(struct conversion *c, struct vg_display *show,
   VG_TRY(vg_outputs_failed(&c->outputs, write_output(c, err), err));
   check_ids(c);
   VG_TRY(vg_outputs_failed(&c->outputs, write_mapbc(c, err), err));
+  VG_TRY(vg_outputs_failed(&c->outputs, write_sheets(c, err), err));
   VG_TRY(vg_display_stopped(show, err));
   vg_display_commit();
   VG_TRY(vg_outputs_commit(&c->outputs, err));
@@ -508,6 +550,7 @@ static void print_json(const struct conversion *c)
   bounds(c, lo, hi);
   json_array_append_new(files, vg_text_json(c->file));
   if (c->mapbc) json_array_append_new(files, vg_text_json(c->mapbc));
+  if (c->sheets) json_array_append_new(files, vg_text_json(c->sheets));
   o = json_pack("{s:o s:s s:o s:o s:o s:f}", "file", vg_text_json(c->a->in),
                 "format", c->suffix, "files", files, "size",
                 vg_report_counts_json(&c->mesh, lo, hi), "notes",
@@ -529,6 +572,7 @@ static void print_text(const struct conversion *c)
     printf("  note: %s\n", c->notes.text[i]);
   printf("  %s\n", c->file);
   if (c->mapbc) printf("  %s\n", c->mapbc);
+  if (c->sheets) printf("  %s\n", c->sheets);
 }
 
 /* --- options ------------------------------------------------------------- */
@@ -602,5 +646,6 @@ int vg_cmd_convert(int argc, char **argv)
   vg_notes_release(&c.notes);
   free(c.file);
   free(c.mapbc);
+  free(c.sheets);
   return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
 }

@@ -113,6 +113,46 @@ static vg_status ask_for_boom(const struct vg_mach_extent *e,
   return vg_settings_add(s, VG_TABLE_SOURCES, &source, err);
 }
 
+/* The role of the sheet, and its name, which a .ugrid does not hold. */
+static vg_status ask_for_sheet(const struct vg_mesh *m, struct vg_settings *s,
+                               struct vg_error *err)
+{
+  struct vg_patch_row row;
+
+  if (!m->n_patch) return VG_OK;
+  vg_settings_row_default(VG_TABLE_PATCHES, &row);
+  row.id = m->patch[0].id;
+  row.role = VG_PATCH_SHEET;
+  snprintf(row.name, sizeof row.name, "%s", m->patch[0].name);
+  return vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
+}
+
+/* Adds the sheet to the surface. */
+static vg_status add_sheet(const struct vg_mesh *sheet, struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  const size_t n_point = m->n_point + sheet->n_point;
+  const size_t n_tri = m->n_tri + sheet->n_tri;
+  size_t cap[3] = { m->n_point, m->n_tri, m->n_tri }, patch;
+
+  if (!sheet->n_tri) return VG_OK;
+  patch = vg_mesh_add_patch(m, sheet->patch[0].id, sheet->patch[0].name);
+  if (patch == SIZE_MAX ||
+      vg_reserve(&m->point, &cap[0], n_point, sizeof *m->point) ||
+      vg_reserve(&m->tri, &cap[1], n_tri, sizeof *m->tri) ||
+      vg_reserve(&m->tri_patch, &cap[2], n_tri, sizeof *m->tri_patch))
+    return vg_fail_memory(err, "the sheet");
+  memcpy(m->point + m->n_point, sheet->point,
+         sheet->n_point * sizeof *m->point);
+  for (size_t t = 0; t < sheet->n_tri; t++, m->n_tri++) {
+    for (int k = 0; k < 3; k++)
+      m->tri[m->n_tri][k] = (uint32_t)m->n_point + sheet->tri[t][k];
+    m->tri_patch[m->n_tri] = (uint32_t)patch;
+  }
+  m->n_point = n_point;
+  return VG_OK;
+}
+
 /* The recommended settings of the case. */
 static vg_status settings_of(const char *name, const struct vg_demo *demo,
                              struct vg_settings *s, struct vg_error *err)
@@ -131,7 +171,7 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
     return ask_for_boom(&demo->farfield.extent, &demo->source[0], s, err);
   for (size_t i = 0; i < demo->n_source && st >= 0; i++)
     st = vg_settings_add(s, VG_TABLE_SOURCES, &demo->source[i], err);
-  return st;
+  return st < 0 ? st : ask_for_sheet(&demo->sheet, s, err);
 }
 
 /* The path STEM.suffix, which must not exist yet. */
@@ -201,6 +241,7 @@ static vg_status write_project(char *const path[3], const char *stem,
   char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
   struct vg_mesh surface = demo->surface; /* Borrowed. */
+  struct vg_mesh with_sheet = VG_MESH_INIT;
   int has_layers;
   vg_status st;
 
@@ -210,6 +251,11 @@ static vg_status write_project(char *const path[3], const char *stem,
     surface.n_tri = demo->n_body_tri;
     surface.n_point = demo->n_body_point;
     surface.n_patch = 1;
+  }
+  if (demo->sheet.n_tri) {
+    VG_TRY(vg_mesh_copy(&with_sheet, &demo->surface, err));
+    VG_TRY(add_sheet(&demo->sheet, &with_sheet, err));
+    surface = with_sheet;
   }
   VG_TRY(settings_of(name, demo, &s, err));
   has_layers = set_layers(name, &s);
@@ -228,6 +274,7 @@ static vg_status write_project(char *const path[3], const char *stem,
            vg_text_count(wanted, cells));
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
+  vg_mesh_release(&with_sheet);
   vg_settings_release(&s);
   return st;
 }

@@ -309,10 +309,11 @@ static void print_json(const struct run *r)
     free(file);
   }
   o = json_pack("{s:o s:I s:o s:f s:f s:f s:o}", "file", vg_text_json(r->path),
-                "inner_faces", (json_int_t)r->info.inner.n_face, "solver_parts",
-                vg_report_solver_json(&r->report), "seconds_read", r->time_read,
-                "seconds_write", r->time_write, "peak_memory_bytes",
-                vg_report_peak_memory(), "files", files);
+                "inner_faces",
+                (json_int_t)(r->info.inner.n_face + r->info.inner.n_sheet_face),
+                "solver_parts", vg_report_solver_json(&r->report),
+                "seconds_read", r->time_read, "seconds_write", r->time_write,
+                "peak_memory_bytes", vg_report_peak_memory(), "files", files);
   json_dumpf(o, stdout, JSON_INDENT(2));
   printf("\n");
   json_decref(o);
@@ -325,6 +326,9 @@ static void print_text(const struct run *r)
     printf("  note: %s is also a volume mesh; its complete name selects it\n",
            r->other);
   vg_report_size_text(stdout, &r->mesh);
+  if (r->info.inner.n_sheet_face)
+    printf("  note: " VG_SHEET_FACES_NOTE "\n", r->path,
+           r->info.inner.n_sheet_face);
   if (r->info.inner.n_face)
     printf("  note: " VG_INNER_FACES_NOTE "\n", r->path, r->info.inner.n_face,
            r->info.inner.patches);

@@ -21,6 +21,9 @@ void vg_mesh_release(struct vg_mesh *m)
   free(m->pri);
   free(m->hex);
   free(m->patch);
+  free(m->sheet_tri);
+  free(m->sheet_of);
+  free(m->sheet);
   memset(m, 0, sizeof *m);
 }
 
@@ -63,6 +66,9 @@ vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
   COPY(pri, n_pri);
   COPY(hex, n_hex);
   COPY(patch, n_patch);
+  COPY(sheet_tri, n_sheet_tri);
+  COPY(sheet_of, n_sheet_tri);
+  COPY(sheet, n_sheet);
 #undef COPY
   if (!bad) return VG_OK;
   vg_mesh_release(to);

@@ -35,6 +35,8 @@ struct vg_patch {
   int32_t family;         /* VGRID family column; equal to bc if unknown */
   int32_t inner;          /* VG_INNER_...: side of an inner surface; its other
                              side has the same triangles, reversed */
+  int32_t is_sheet;       /* 1: an inner surface through which the mesh is
+                             connected (core/mesh/sheets.h) */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 
@@ -50,6 +52,11 @@ struct vg_mesh {
   uint32_t (*pri)[6];     /* [n_pri] */
   uint32_t (*hex)[8];     /* [n_hex] */
   struct vg_patch *patch; /* [n_patch] */
+  /* Sheets: named faces between two cells. They are not in tri. */
+  size_t n_sheet_tri, n_sheet;
+  uint32_t (*sheet_tri)[3]; /* [n_sheet_tri] of any orientation */
+  uint32_t *sheet_of;       /* [n_sheet_tri] index into sheet[] */
+  struct vg_patch *sheet;   /* [n_sheet] numbers and names */
 };
 #define VG_MESH_INIT                                                           \
   {                                                                            \

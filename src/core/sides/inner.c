@@ -6,15 +6,37 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/union_find.h"
 #include "core/sides/inner_parts.h"
+
+/* Finds the sectors that the mesh connects through sheets. */
+static vg_status connect(struct vg_inner_work *s, struct vg_error *err)
+{
+  const uint32_t *sector = s->sides.sector;
+
+  s->room = vg_alloc(s->sides.n_sector, sizeof *s->room);
+  if (!s->room) return vg_fail_memory(err, "the sides of a sheet");
+  for (uint32_t i = 0; i < s->sides.n_sector; i++) s->room[i] = i;
+  for (size_t t = 0; t < s->m->n_tri; t++)
+    for (int k = 0; k < 3 && vg_is_passed(s, t); k++)
+      vg_union(s->room, sector[6 * t + k], sector[6 * t + 3 + k]);
+  for (uint32_t i = 0; i < s->sides.n_sector; i++)
+    s->room[i] = vg_root_of(s->room, i);
+  return VG_OK;
+}
 
 static vg_status build(struct vg_inner_work *s, struct vg_error *err)
 {
   const struct vg_mesh *m = s->m;
 
+  vg_status st;
+
+  free(s->room);
+  s->room = NULL;
   vg_sides_release(&s->sides);
-  return vg_sides_build(&s->sides, m->n_point, (const double(*)[3])m->point,
-                        m->n_tri, (const uint32_t(*)[3])m->tri, err);
+  st = vg_sides_build(&s->sides, m->n_point, (const double(*)[3])m->point,
+                      m->n_tri, (const uint32_t(*)[3])m->tri, err);
+  return st < 0 ? st : connect(s, err);
 }
 
 /* --- copies of points ----------------------------------------------------- */
@@ -26,7 +48,8 @@ static int is_fluid(const struct vg_inner_work *s, uint32_t e)
 }
 
 /* Gives each sector of the points of sheets a point: the first one the point
- * itself, the others copies. point: [n_sector] */
+ * itself, the others copies. Sectors that the mesh connects through sheets are
+ * one. point: [n_sector] */
 static vg_status number_sectors(struct vg_inner_work *s, uint32_t *point,
                                 struct vg_error *err)
 {
@@ -40,9 +63,10 @@ static vg_status number_sectors(struct vg_inner_work *s, uint32_t *point,
     for (uint32_t k = 2 * a->first[p]; k < 2 * a->first[p + 1]; k++) {
       const uint32_t c = a->corner[k / 2];
       const uint32_t e = 3 * (2 * (c / 3) + k % 2) + c % 3;
+      uint32_t *at = &point[s->room[a->sector[e]]];
 
-      if (!is_fluid(s, e) || point[a->sector[e]] != UINT32_MAX) continue;
-      point[a->sector[e]] = is_first ? p : (uint32_t)n++;
+      if (!is_fluid(s, e) || *at != UINT32_MAX) continue;
+      *at = is_first ? p : (uint32_t)n++;
       if (is_first) {
         is_first = 0;
         continue;
@@ -75,9 +99,10 @@ static vg_status take_sides(struct vg_inner_work *s, const uint32_t *point,
   for (size_t t = 0; t < n_tri; t++) {
     const uint32_t *first = a->sector + 6 * t, *second = first + 3;
 
-    for (int k = 0; k < 3; k++) tri[t][k] = point[first[k]];
+    for (int k = 0; k < 3; k++) tri[t][k] = point[s->room[first[k]]];
     if (!vg_is_sheet(s, t)) continue;
-    for (int k = 0; k < 3; k++) tri[m->n_tri][k] = point[second[k ? 3 - k : 0]];
+    for (int k = 0; k < 3; k++)
+      tri[m->n_tri][k] = point[s->room[second[k ? 3 - k : 0]]];
     patch[m->n_tri++] = back[patch[t]];
   }
   free(m->tri);
@@ -137,6 +162,7 @@ vg_status vg_inner_double(struct vg_mesh *m, const uint8_t *is_inner,
   VG_TRY(make(&s, back, err));
   vg_mesh_move(m, &work);
 done:
+  free(s.room);
   vg_sides_release(&s.sides);
   vg_mesh_release(&work);
   return st;

@@ -146,21 +146,26 @@ static void mark_regions(const struct vg_inner_work *s, uint8_t *has)
 }
 
 /* Triangles that edges connect belong to one component, which has one region of
- * fluid unless its sheets divide it. */
+ * fluid unless its sheets divide it. Sheets through which the mesh continues do
+ * not divide regions. */
 static vg_status count_sealed(const struct vg_inner_work *s, const uint8_t *has,
                               struct vg_error *err)
 {
   const struct vg_sides *a = &s->sides;
   uint32_t *up = vg_alloc(a->n_region, sizeof *up);
+  size_t n_fluid = 0, n_component = 0;
 
   if (!up) return vg_fail_memory(err, "the sides of a sheet");
   for (uint32_t r = 0; r < a->n_region; r++) up[r] = r;
   for (size_t t = 0; t < a->n_tri; t++)
-    vg_union(up, a->region[2 * t], a->region[2 * t + 1]);
-  s->report->n_sealed = 0;
+    if (vg_is_passed(s, t))
+      vg_union(up, a->region[2 * t], a->region[2 * t + 1]);
   for (uint32_t r = 0; r < a->n_region; r++)
-    s->report->n_sealed += !(has[r] & HAS_SOLID);
-  for (uint32_t r = 0; r < a->n_region; r++) s->report->n_sealed -= up[r] == r;
+    n_fluid += up[r] == r && !(has[r] & HAS_SOLID);
+  for (size_t t = 0; t < a->n_tri; t++)
+    vg_union(up, a->region[2 * t], a->region[2 * t + 1]);
+  for (uint32_t r = 0; r < a->n_region; r++) n_component += up[r] == r;
+  s->report->n_sealed = n_fluid - n_component;
   free(up);
   return VG_OK;
 }

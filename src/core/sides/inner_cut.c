@@ -9,24 +9,27 @@
 #include "core/sides/inner_parts.h"
 #include "core/sides/sides_parts.h"
 
-/* Do both sides of triangle t have the same points? */
+/* Would both sides of triangle t, through which no fluid passes, have the same
+ * points? */
 static int is_same(const struct vg_inner_work *s, size_t t)
 {
   const uint32_t *sector = s->sides.sector + 6 * t;
+  int n = 0;
 
-  return vg_is_sheet(s, t) && sector[0] == sector[3] &&
-         sector[1] == sector[4] && sector[2] == sector[5];
+  if (!vg_is_sheet(s, t) || vg_is_passed(s, t)) return 0;
+  for (int k = 0; k < 3; k++) n += s->room[sector[k]] == s->room[sector[3 + k]];
+  return n == 3;
 }
 
-/* Sectors of the wedge above half-edge h at the lower and the higher point of
- * its edge. */
+/* The first connected sectors of the wedge above half-edge h at the lower and
+ * the higher point of its edge. */
 static void ends_of(const struct vg_inner_work *s, uint32_t h, uint32_t end[2])
 {
   const uint32_t e = vg_wedge_above(&s->sides, h);
   const int is_up = vg_half_from(s->sides.tri, h) < vg_half_to(s->sides.tri, h);
 
-  end[!is_up] = s->sides.sector[e];
-  end[is_up] = s->sides.sector[vg_half_next(e)];
+  end[!is_up] = s->room[s->sides.sector[e]];
+  end[is_up] = s->room[s->sides.sector[vg_half_next(e)]];
 }
 
 /* Does a sheet end on another surface in this edge alone, between two free
@@ -35,14 +38,19 @@ static int is_tied(const struct vg_inner_work *s, size_t edge)
 {
   const struct vg_edges *e = &s->sides.edge;
   const uint32_t n = vg_edges_count(e, edge), *half = vg_edges_at(e, edge);
-  int n_sheet = 0;
+  int n_sheet = 0, n_wall = 0;
 
-  for (uint32_t k = 0; k < n; k++) n_sheet += vg_is_sheet(s, half[k] / 3);
-  if (!n_sheet || (uint32_t)n_sheet == n) return 0;
+  for (uint32_t k = 0; k < n; k++) {
+    n_sheet += vg_is_sheet(s, half[k] / 3) && !vg_is_passed(s, half[k] / 3);
+    n_wall += !vg_is_sheet(s, half[k] / 3);
+  }
+  if (!n_sheet || !n_wall) return 0;
   for (uint32_t k = 0; k < n; k++)
     for (uint32_t l = 0; l < k; l++) {
       uint32_t a[2], b[2];
 
+      if (vg_is_passed(s, half[k] / 3) || vg_is_passed(s, half[l] / 3))
+        continue;
       ends_of(s, half[k], a);
       ends_of(s, half[l], b);
       if (a[0] == b[0] && a[1] == b[1]) return 1;
@@ -51,16 +59,22 @@ static int is_tied(const struct vg_inner_work *s, size_t edge)
 }
 
 /* Rank of half-edge h for a cut: edges of sheets alone before those of walls;
- * free edges have none. */
+ * free edges have none, nor have those at which the mesh passes around the
+ * triangle. */
 static int rank_of(const struct vg_inner_work *s, uint32_t h)
 {
   const size_t i = s->sides.edge.of_half[h];
   const uint32_t n = vg_edges_count(&s->sides.edge, i);
-  int rank = n > 1 ? 2 : 0;
+  uint32_t n_solid = 0;
+  int has_wall = 0;
 
-  for (uint32_t k = 0; k < n && rank; k++)
-    if (!vg_is_sheet(s, vg_edges_at(&s->sides.edge, i)[k] / 3)) rank = 1;
-  return rank;
+  for (uint32_t k = 0; k < n; k++) {
+    const uint32_t t = vg_edges_at(&s->sides.edge, i)[k] / 3;
+
+    n_solid += !vg_is_passed(s, t);
+    has_wall |= !vg_is_sheet(s, t);
+  }
+  return n_solid < 2 ? 0 : has_wall ? 1 : 2;
 }
 
 /* The half-edge of triangle t to cut; UINT32_MAX: all are free. */

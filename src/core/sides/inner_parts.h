@@ -12,11 +12,20 @@ struct vg_inner_work {
   const uint8_t *is_inner; /* [m->n_patch] */
   struct vg_inner_report *report;
   struct vg_sides sides; /* of the triangles of m */
+  uint32_t *room;        /* [sides.n_sector] the first of the sectors around a
+                            point that sheets with is_sheet connect */
 };
 
 static inline int vg_is_sheet(const struct vg_inner_work *s, size_t tri)
 {
   return s->is_inner[s->m->tri_patch[tri]];
+}
+
+/** Does the mesh continue through triangle tri, so that its sides have the same
+ * points? */
+static inline int vg_is_passed(const struct vg_inner_work *s, size_t tri)
+{
+  return s->m->patch[s->m->tri_patch[tri]].is_sheet && vg_is_sheet(s, tri);
 }
 
 /** VG_ERR_GEOMETRY if a sheet is not in the fluid or touches a surface in a

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/cgns/cgns_conditions.h"
 #include "io/cgns/cgns_put.h"
 #include "io/cgns/cgns_store.h"
@@ -21,6 +22,7 @@
 #define BASE "Base"
 #define BLOCK 1024
 #define SECOND "+quads" /* a suffix; words have no plus */
+#define REGION "+faces" /* another one */
 
 /* Our node order to CGNS's, whose pyramid has its apex last; CGNS's codes of
  * kinds. */
@@ -208,6 +210,30 @@ static vg_status layout_faces(struct layout *l, const char *word, size_t first,
                      err);
 }
 
+/* A sheet has a family without a condition, and the region of its faces. */
+static vg_status layout_sheet(struct layout *l, const char *word,
+                              uint64_t before, struct vg_error *err)
+{
+  static const int32_t two = 2;
+  const struct vg_cgns_data dimension = { "I4", 1, { 1, 0 }, &two };
+  const int64_t range[2] = { (int64_t)before + 1, (int64_t)l->n_element };
+  char name[VG_CGNS_NAME];
+  int64_t id;
+  vg_status st;
+
+  snprintf(name, sizeof name, "%.*s" REGION, VG_CGNS_WORD_MOST, word);
+  VG_TRY(vg_cgns_tree_add(l->tree, l->zone, name, "ZoneSubRegion_t", &dimension,
+                          &id, NULL, err));
+  VG_TRY(add_indices(l, id, "PointRange", "IndexRange_t", 2, 1, 2, range, NULL,
+                     err));
+  VG_TRY(
+    add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
+  VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
+  st = add_empty(l, l->base, word, "Family_t", &id, err);
+done:
+  return st;
+}
+
 static vg_status layout_condition(struct layout *l, const char *word,
                                   const struct vg_patch *p, uint64_t before,
                                   struct vg_error *err)
@@ -245,7 +271,9 @@ static vg_status layout_patches(struct layout *l, struct vg_error *err)
     while (quad < end && l->c->face[quad] < m->n_tri) quad++;
     VG_TRY(layout_faces(l, l->word[p], first, quad, 3, 0, err));
     VG_TRY(layout_faces(l, l->word[p], quad, end, 4, quad > first, err));
-    st = layout_condition(l, l->word[p], &m->patch[p], before, err);
+    st = m->patch[p].is_sheet
+         ? layout_sheet(l, l->word[p], before, err)
+         : layout_condition(l, l->word[p], &m->patch[p], before, err);
   }
 done:
   return st;
@@ -506,16 +534,19 @@ vg_status vg_cgns_write_with(const char *path, const struct vg_mesh *m,
                              struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
-  struct vg_cgns c;
-  vg_status st = vg_cgns_plan(path, m, o, &c, err);
+  struct vg_mesh view;
+  struct vg_cgns c = { .frame = NULL };
+  vg_status st = vg_mesh_sheet_view(m, &view, err);
 
   if (st < 0) return st;
+  VG_TRY(vg_cgns_plan(path, &view, o, &c, err));
   VG_TRY(vg_output_open(path, &out, err));
   vg_cgns_put(&out, &c);
   st = vg_output_commit(&out, err);
 done:
   vg_output_release(&out);
   vg_cgns_release(&c);
+  vg_mesh_sheet_view_release(&view, m);
   return st;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/mesh/foam_parts.h"
 #include "io/stream/boundary.h"
 #include "io/vgrid/mapbc.h"
@@ -50,6 +51,24 @@ static const struct zone_type *zone_type(const struct vg_patch *p)
   case 11003: return &outlet;
   default: return &wall;
   }
+}
+
+/* Kind of n faces, n_quad of which have four vertices. */
+static int face_kind(uint64_t n, uint64_t n_quad)
+{
+  return n_quad == 0 ? 3 : n_quad == n ? 4 : MIXED;
+}
+
+/* Number of faces between cells that are in no sheet, which have the zone
+ * INTERIOR; their kind. */
+static uint64_t n_plain(const struct vg_fluent *f)
+{
+  return f->n_internal - f->frame->n_sheet_tri;
+}
+
+static int plain_kind(const struct vg_fluent *f)
+{
+  return face_kind(n_plain(f), f->n_quad);
 }
 
 /* --- lines --- */
@@ -108,12 +127,6 @@ void vg_fluent_put_point(struct vg_output *out, const double x[3])
 
 /* --- kinds --- */
 
-/* Kind of n faces, n_quad of which have four vertices. */
-static int face_kind(uint64_t n, uint64_t n_quad)
-{
-  return n_quad == 0 ? 3 : n_quad == n ? 4 : MIXED;
-}
-
 static int patch_kind(const struct vg_fluent *f, size_t patch)
 {
   size_t first = f->start[patch], end = f->start[patch + 1], n_quad = 0;
@@ -147,17 +160,21 @@ static void put_head(struct vg_output *out, size_t zone, uint64_t before,
 static void put_names(struct vg_output *out, const struct vg_fluent *f)
 {
   const char(*word)[VG_PATCH_WORD] = (const char(*)[VG_PATCH_WORD])f->word;
+  const size_t n_word = f->frame->n_patch + f->frame->n_sheet;
   char name[VG_PATCH_WORD];
 
-  vg_patch_free_word(word, f->frame->n_patch, "fluid", name);
+  vg_patch_free_word(word, n_word, "fluid", name);
   vg_output_format(out, "(45 (%d fluid %s)())\n", FLUID, name);
-  vg_patch_free_word(word, f->frame->n_patch, "interior", name);
-  if (f->n_internal)
+  vg_patch_free_word(word, n_word, "interior", name);
+  if (n_plain(f))
     vg_output_format(out, "(45 (%d interior %s)())\n", INTERIOR, name);
   for (size_t p = 0; p < f->frame->n_patch; p++)
     if (f->start[p] < f->start[p + 1])
       vg_output_format(out, "(45 (%zu %s %s)())\n", PATCHES + p,
                        zone_type(f->frame->patch + p)->name, f->word[p]);
+  for (size_t p = f->frame->n_patch; p < n_word; p++)
+    vg_output_format(out, "(45 (%zu interior %s)())\n", PATCHES + p,
+                     f->word[p]);
 }
 
 /* --- points, cells, faces ------------------------------------------------ */
@@ -200,26 +217,84 @@ static void put_cells(struct vg_output *out, struct vg_fluent *f, int is_whole)
   vg_output_text(out, kind == MIXED ? "))\n" : ")\n");
 }
 
-static void put_interior(struct vg_output *out, struct vg_fluent *f,
-                         const struct vg_cell_links *links)
+/* A face between cells that is in a sheet: code of the half-face of the lower
+ * cell, and the other cell. */
+struct sheet_face {
+  uint32_t code, mate;
+};
+
+/* Faces of the sheets, found while the others are written. face: [n_sheet_tri];
+ * NULL: none are looked for */
+struct sheet_faces {
+  struct vg_sheet_table table;
+  struct sheet_face *face;
+};
+
+/* Returns 1 for a face of a sheet. */
+static int keep_sheet(struct sheet_faces *s, int n, const uint32_t *node,
+                      uint32_t code, uint32_t mate)
 {
-  int kind = face_kind(f->n_internal, f->n_quad);
+  int is_same;
+  const uint32_t t = n == 3 && s->face
+                     ? vg_sheet_table_find(&s->table, node, &is_same)
+                     : UINT32_MAX;
+
+  if (t == UINT32_MAX) return 0;
+  s->face[t] = (struct sheet_face){ code, mate };
+  return 1;
+}
+
+static void put_interior(struct vg_output *out, struct vg_fluent *f,
+                         const struct vg_cell_links *links,
+                         struct sheet_faces *sheets)
+{
   uint32_t code[6], neighbour[6], node[4];
 
-  if (!f->n_internal) return;
-  put_head(out, INTERIOR, 0, f->n_internal, TYPE_INTERIOR, kind);
   f->at_internal = out->written;
-  if (!links) vg_output_skip(out, f->n_internal * face_line(f, kind));
+  if (!n_plain(f)) return;
+  put_head(out, INTERIOR, 0, n_plain(f), TYPE_INTERIOR, plain_kind(f));
+  f->at_internal = out->written;
+  if (!links) vg_output_skip(out, n_plain(f) * face_line(f, plain_kind(f)));
   for (uint32_t cell = 0; links && cell < links->n_cell; cell++) {
     int n = vg_foam_upper(links, cell, code, neighbour);
 
     for (int i = 0; i < n; i++) {
       int n_node = vg_half_face_nodes(links, code[i], node);
 
-      vg_fluent_put_internal(out, f, n_node, node, cell, neighbour[i]);
+      if (!keep_sheet(sheets, n_node, node, code[i], neighbour[i]))
+        vg_fluent_put_internal(out, f, n_node, node, cell, neighbour[i]);
     }
   }
   vg_output_text(out, "))\n");
+}
+
+/* The faces of each sheet follow those of the zone INTERIOR, and have a zone of
+ * the same type. */
+static void put_sheets(struct vg_output *out, const struct vg_fluent *f,
+                       const struct vg_cell_links *links,
+                       const struct sheet_faces *sheets)
+{
+  const struct vg_mesh *m = f->frame;
+  uint64_t before = n_plain(f);
+  uint32_t node[4];
+
+  for (size_t i = 0; i < m->n_sheet; i++) {
+    size_t n = 0;
+
+    for (size_t t = 0; t < m->n_sheet_tri; t++) n += m->sheet_of[t] == i;
+    if (!n) continue;
+    put_head(out, PATCHES + m->n_patch + i, before, n, TYPE_INTERIOR, 3);
+    if (!links) vg_output_skip(out, n * face_line(f, 3));
+    for (size_t t = 0; links && t < m->n_sheet_tri; t++) {
+      const struct sheet_face *s = &sheets->face[t];
+
+      if (m->sheet_of[t] != i) continue;
+      vg_half_face_nodes(links, s->code, node);
+      put_face(out, f, 3, 3, node, s->mate + 1, (s->code >> 3) + 1);
+    }
+    vg_output_text(out, "))\n");
+    before += n;
+  }
 }
 
 static void put_patch(struct vg_output *out, struct vg_fluent *f, size_t patch,
@@ -240,7 +315,8 @@ static void put_patch(struct vg_output *out, struct vg_fluent *f, size_t patch,
 
 /* links: of the whole mesh. With NULL, points, cells and faces are skipped. */
 static void put_all(struct vg_output *out, struct vg_fluent *f,
-                    const struct vg_cell_links *links)
+                    const struct vg_cell_links *links,
+                    struct sheet_faces *sheets)
 {
   const struct vg_mesh *m = f->frame;
 
@@ -254,14 +330,15 @@ static void put_all(struct vg_output *out, struct vg_fluent *f,
   put_cells(out, f, links != NULL);
   vg_output_format(out, "(13 (0 1 %llx 0 0))\n",
                    (unsigned long long)(f->n_internal + m->n_tri + m->n_quad));
-  put_interior(out, f, links);
+  put_interior(out, f, links, sheets);
+  put_sheets(out, f, links, sheets);
   for (size_t p = 0; p < m->n_patch; p++) put_patch(out, f, p, links);
   put_names(out, f);
 }
 
 void vg_fluent_put_frame(struct vg_output *out, struct vg_fluent *f)
 {
-  put_all(out, f, NULL);
+  put_all(out, f, NULL, NULL);
 }
 
 /* --- parts --------------------------------------------------------------- */
@@ -284,10 +361,8 @@ void vg_fluent_put_kinds(struct vg_output *out, const struct vg_fluent *f,
 void vg_fluent_seek_internal(struct vg_output *out, const struct vg_fluent *f,
                              uint64_t face)
 {
-  int kind = face_kind(f->n_internal, f->n_quad);
-
-  assert(face <= f->n_internal);
-  vg_output_seek(out, f->at_internal + face * face_line(f, kind));
+  assert(face <= f->n_internal && !f->frame->n_sheet);
+  vg_output_seek(out, f->at_internal + face * face_line(f, plain_kind(f)));
 }
 
 void vg_fluent_put_internal(struct vg_output *out, const struct vg_fluent *f,
@@ -295,8 +370,7 @@ void vg_fluent_put_internal(struct vg_output *out, const struct vg_fluent *f,
                             uint32_t mate)
 {
   assert((n == 3 || n == 4) && node && cell < mate);
-  put_face(out, f, face_kind(f->n_internal, f->n_quad), n, node, mate + 1,
-           cell + 1);
+  put_face(out, f, plain_kind(f), n, node, mate + 1, cell + 1);
 }
 
 static size_t patch_of(const struct vg_fluent *f, size_t at)
@@ -342,7 +416,7 @@ static vg_status find_places(struct vg_fluent *f, struct vg_error *err)
   struct vg_output out = VG_OUTPUT_INIT;
   vg_status st = vg_output_shared(NULL, &out, err);
 
-  if (st >= 0) put_all(&out, f, NULL);
+  if (st >= 0) put_all(&out, f, NULL, NULL);
   vg_output_release(&out);
   return st;
 }
@@ -366,6 +440,22 @@ static vg_status check_counts(const char *path, const struct vg_fluent *f,
   return VG_OK;
 }
 
+/* Words of the patches and, after them, of the sheets. NULL: no memory. */
+static char (*make_words(const struct vg_mesh *m))[VG_PATCH_WORD]
+{
+  struct vg_mesh all = { .n_patch = m->n_patch + m->n_sheet };
+  char(*word)[VG_PATCH_WORD] = NULL;
+
+  all.patch = vg_alloc(all.n_patch, sizeof *all.patch);
+  if (!all.patch) return NULL;
+  if (m->n_patch) memcpy(all.patch, m->patch, m->n_patch * sizeof *m->patch);
+  if (m->n_sheet)
+    memcpy(all.patch + m->n_patch, m->sheet, m->n_sheet * sizeof *m->sheet);
+  word = vg_patch_words(&all, VG_PATCH_WORD_MOST);
+  free(all.patch);
+  return word;
+}
+
 vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
                          uint64_t n_internal, uint64_t n_quad,
                          struct vg_fluent *f, struct vg_error *err)
@@ -383,7 +473,7 @@ vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
   }
   VG_TRY(check_counts(path, f, err));
   f->width = digits(f->n_cell > frame->n_point ? f->n_cell : frame->n_point);
-  f->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
+  f->word = make_words(frame);
   f->at_patch = vg_calloc(frame->n_patch, sizeof *f->at_patch);
   f->kind = vg_calloc(frame->n_patch, sizeof *f->kind);
   if (!f->word || !f->at_patch || !f->kind)
@@ -412,20 +502,28 @@ vg_status vg_fluent_write(const char *path, const struct vg_mesh *m,
   struct vg_cell_links links = VG_CELL_LINKS_INIT;
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_fluent f = { .frame = NULL };
+  struct sheet_faces sheets = { VG_SHEET_TABLE_INIT, NULL };
   uint64_t n_quad;
   vg_status st;
 
+  VG_TRY(vg_sheet_table_new(&sheets.table, m, err));
+  if (m->n_sheet_tri) {
+    sheets.face = vg_calloc(m->n_sheet_tri, sizeof *sheets.face);
+    if (!sheets.face) VG_TRY(vg_fail_memory(err, "the sheets"));
+  }
   if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex)
     VG_TRY(vg_foam_links(&links, m, path, err));
   n_quad = links.n_corner - 3 * (links.n_internal + m->n_tri) -
            4 * (uint64_t)m->n_quad;
   VG_TRY(vg_fluent_plan(path, m, links.n_internal, n_quad, &f, err));
   VG_TRY(vg_output_open(path, &out, err));
-  put_all(&out, &f, &links);
+  put_all(&out, &f, &links, &sheets);
   st = vg_output_commit(&out, err);
 done:
   vg_output_release(&out);
   vg_cell_links_release(&links);
   vg_fluent_release(&f);
+  vg_sheet_table_release(&sheets.table);
+  free(sheets.face);
   return st;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* The five files of an OpenFOAM mesh; see io/mesh/foam.h and formats.md 4.3. A
+/* The files of an OpenFOAM mesh; see io/mesh/foam.h and formats.md 4.3. A
  * list is either text, one item per line, or its length, '(', the bytes and
  * ')'. Binary faces are two lists of labels: where each face starts, and the
  * nodes of all faces. */
@@ -17,6 +17,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/cell_links.h"
+#include "core/mesh/sheets.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
 #include "io/stream/patch_words.h"
@@ -344,7 +345,101 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Write all five files completely into w->folder. */
+/* A face between cells that is in a sheet. */
+struct zone_face {
+  int32_t label;
+  int is_flipped; /* 1: from the neighbour to the owner, against the sheet */
+};
+
+/* Finds the face of each triangle of the sheets: [n_sheet_tri] */
+static void find_zones(const struct writing *w, const struct vg_sheet_table *t,
+                       struct zone_face *face)
+{
+  const struct vg_cell_links *f = &w->faces;
+  uint32_t code[6], neighbour[6], node[4];
+  int32_t label = 0;
+  int is_same;
+
+  for (uint32_t cell = 0; cell < f->n_cell; cell++) {
+    const int n = vg_foam_upper(f, cell, code, neighbour);
+
+    for (int i = 0; i < n; i++, label++) {
+      uint32_t at = UINT32_MAX;
+
+      if (vg_half_face_nodes(f, code[i], node) == 3)
+        at = vg_sheet_table_find(t, node, &is_same);
+      if (at != UINT32_MAX) face[at] = (struct zone_face){ label, !is_same };
+    }
+  }
+}
+
+static void put_zone(struct vg_output *o, const struct vg_mesh *m, size_t i,
+                     const struct zone_face *face)
+{
+  size_t n = 0;
+
+  for (size_t t = 0; t < m->n_sheet_tri; t++) n += m->sheet_of[t] == i;
+  for (int flip = 0; flip < 2; flip++) {
+    vg_output_format(o,
+                     flip ? "        flipMap         List<bool>\n%zu\n(\n"
+                          : "        faceLabels      List<label>\n%zu\n(\n",
+                     n);
+    for (size_t t = 0; t < m->n_sheet_tri; t++) {
+      if (m->sheet_of[t] != i) continue;
+      vg_output_int(o, flip ? face[t].is_flipped : face[t].label);
+      vg_output_bytes(o, "\n", 1);
+    }
+    vg_output_text(o, ")\n;\n");
+  }
+}
+
+/* Sheets are zones of faces, whose normals are those of the sheets. Names that
+ * patches have too are allowed. */
+static vg_status put_zones(const struct writing *w, struct vg_output *o,
+                           struct vg_error *err)
+{
+  const struct vg_mesh *m = w->m;
+  const struct vg_mesh as_patches = { .n_patch = m->n_sheet,
+                                      .patch = m->sheet };
+  struct vg_sheet_table table = VG_SHEET_TABLE_INIT;
+  char(*name)[VG_PATCH_WORD] = vg_patch_words(&as_patches, VG_PATCH_WORD_MOST);
+  struct zone_face *face = vg_alloc(m->n_sheet_tri, sizeof *face);
+  vg_status st = name && face ? vg_sheet_table_new(&table, m, err)
+                              : vg_fail_memory(err, "the sheets");
+
+  VG_TRY(st);
+  find_zones(w, &table, face);
+  vg_foam_header(o, "regIOobject", location, VG_FOAM_ZONES, 1, NULL);
+  vg_output_format(o, "\n%zu\n(\n", m->n_sheet);
+  for (size_t i = 0; i < m->n_sheet; i++) {
+    vg_output_format(o, "    %s\n    {\n        type            faceZone;\n",
+                     name[i]);
+    put_zone(o, m, i, face);
+    vg_output_text(o, "    }\n");
+  }
+  vg_output_text(o, ")\n");
+done:
+  vg_sheet_table_release(&table);
+  free(name);
+  free(face);
+  return st;
+}
+
+static vg_status write_zones(const struct writing *w, struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  char *path = vg_foam_path(w->folder, VG_FOAM_ZONES);
+  vg_status st = path ? vg_output_open(path, &out, err)
+                      : vg_fail_memory(err, "a file name");
+
+  if (st >= 0) st = put_zones(w, &out, err);
+  if (st >= 0) st = vg_output_commit(&out, err);
+  vg_output_release(&out);
+  free(path);
+  return st;
+}
+
+/* Write all files completely into w->folder. */
 static vg_status put_mesh(struct writing *w, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -366,6 +461,7 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
   put_points(w);
   if ((st = put_topology(w, err)) < 0) return st;
   if ((st = put_boundary(w, err)) < 0) return st;
+  if (w->m->n_sheet && (st = write_zones(w, err)) < 0) return st;
   for (int i = 0; i < VG_FOAM_FILES; i++)
     if ((st = vg_output_commit(w->out + i, err)) < 0) return st;
   return VG_OK;
@@ -373,8 +469,9 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
 
 static void remove_mesh(const char *folder)
 {
-  for (int i = 0; i < VG_FOAM_FILES; i++) {
-    char *path = vg_foam_path(folder, vg_foam_file[i]);
+  for (int i = 0; i <= VG_FOAM_FILES; i++) {
+    char *path = vg_foam_path(folder, i < VG_FOAM_FILES ? vg_foam_file[i]
+                                                        : VG_FOAM_ZONES);
 
     if (path) unlink(path);
     free(path);

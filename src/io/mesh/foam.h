@@ -3,6 +3,8 @@
  *
  * A case is a folder:
  *   CASE/constant/polyMesh/{points,faces,owner,neighbour,boundary}
+ *   CASE/constant/polyMesh/faceZones  if the mesh has sheets, a zone for each,
+ *                  with the normals of the sheet
  *   CASE/system/{controlDict,fvSchemes,fvSolution}  written only if absent,
  *                  with the minimum that OpenFOAM's mesh tools (checkMesh,
  *                  ...) require

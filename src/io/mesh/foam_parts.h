@@ -31,6 +31,8 @@ vg_status vg_foam_folder(const char *path, struct vg_error *err);
 enum { VG_FOAM_FILES = 5 };
 extern const char *const vg_foam_file[VG_FOAM_FILES];
 
+#define VG_FOAM_ZONES "faceZones"
+
 /** Write the header of an OpenFOAM file; note may be NULL. */
 struct vg_output;
 void vg_foam_header(struct vg_output *out, const char *class_name,

@@ -24,6 +24,7 @@
 #include "io/mesh/tri.h"
 #include "io/mesh/ugrid.h"
 #include "io/mesh/vtu.h"
+#include "io/stream/sheet_file.h"
 #include "io/vgrid/vgrid.h"
 
 typedef vg_status (*reader)(const char *path, struct vg_mesh *out,
@@ -120,15 +121,16 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
  * ROW(SUFFIX, READ, WRITE, KIND, USES)
  *   KIND  of CAD files, which io/cad reads with its own options
  *   USES  INPUT: a project's surface may have the suffix; TESSELLATION: its
- *         triangles approximate a shape and are not meant for meshing */
+ *         triangles approximate a shape and are not meant for meshing; SHEETS:
+ *         it holds faces between cells */
 #define READ_AND_WRITTEN(ROW)                                                  \
   ROW("stl", read_stl, vg_stl_write, NONE, INPUT | TESSELLATION)               \
   ROW("tri", read_tri, vg_tri_write, NONE, INPUT | TESSELLATION)               \
   ROW("obj", read_obj, vg_obj_write, NONE, INPUT | TESSELLATION)               \
-  ROW("mesh", read_medit, vg_medit_write, NONE, INPUT)                         \
-  ROW("meshb", read_medit, vg_medit_write, NONE, INPUT)                        \
-  ROW("msh", read_gmsh, vg_gmsh_write, NONE, INPUT)                            \
-  ROW("cgns", read_cgns, vg_cgns_write, NONE, INPUT)                           \
+  ROW("mesh", read_medit, vg_medit_write, NONE, INPUT | SHEETS)                \
+  ROW("meshb", read_medit, vg_medit_write, NONE, INPUT | SHEETS)               \
+  ROW("msh", read_gmsh, vg_gmsh_write, NONE, INPUT | SHEETS)                   \
+  ROW("cgns", read_cgns, vg_cgns_write, NONE, INPUT | SHEETS)                  \
   UGRID(ROW, "b8.ugrid")                                                       \
   UGRID(ROW, "lb8.ugrid")                                                      \
   UGRID(ROW, "b4.ugrid")                                                       \
@@ -144,8 +146,8 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   UGRID(ROW, "ugrid")                                                          \
   ROW("cogsg", read_cogsg, write_cogsg, NONE, 0)
 #define WRITTEN(ROW)                                                           \
-  ROW(VG_FLUENT_SUFFIX, NULL, vg_fluent_write, NONE, 0)                        \
-  ROW(VG_FOAM_SUFFIX, NULL, write_foam, NONE, 0)                               \
+  ROW(VG_FLUENT_SUFFIX, NULL, vg_fluent_write, NONE, SHEETS)                   \
+  ROW(VG_FOAM_SUFFIX, NULL, write_foam, NONE, SHEETS)                          \
   ROW("su2", NULL, vg_su2_write, NONE, 0)                                      \
   ROW("vtu", NULL, write_vtu, NONE, 0)
 #define READ_ONLY(ROW)                                                         \
@@ -162,7 +164,7 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   ROW(suffix, vg_ugrid_read, vg_ugrid_write, NONE, INPUT)
 #define ALL(ROW) READ_AND_WRITTEN(ROW) WRITTEN(ROW) READ_ONLY(ROW)
 
-enum { INPUT = 1, TESSELLATION = 2 };
+enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4 };
 
 static const struct format {
   const char *suffix;
@@ -257,6 +259,23 @@ int vg_format_is_tessellation(const char *path)
   const struct format *f = find(path, without_gz(path));
 
   return f && f->uses & TESSELLATION;
+}
+
+int vg_format_holds_sheets(const char *suffix)
+{
+  for (size_t i = 0; i < N_FORMAT; i++)
+    if (!strcmp(formats[i].suffix, suffix)) return formats[i].uses & SHEETS;
+  return 0;
+}
+
+vg_status vg_format_sheet_file(const char *path, char **out,
+                               struct vg_error *err)
+{
+  const struct format *f = find(path, without_gz(path));
+
+  if (!f || f->read != vg_ugrid_read) *out = strdup("");
+  else *out = companion(path, "." VG_SHEET_SUFFIX, "." VG_SHEET_SUFFIX ".gz");
+  return *out ? VG_OK : vg_fail_memory(err, "a file name");
 }
 
 int vg_format_holds_cells(const char *path)
@@ -363,6 +382,51 @@ static struct vg_read_info asked_of(const struct vg_read_info *info)
   return asked;
 }
 
+/* Adds the sheets of STEM.sheets to the faces of a mesh with cells. */
+static vg_status read_sheets(const char *path, struct vg_mesh *m,
+                             struct vg_error *err)
+{
+  char *name;
+  vg_status st = vg_format_sheet_file(path, &name, err);
+
+  if (st < 0) return st;
+  if (*name) st = vg_sheet_file_read(name, m, err);
+  free(name);
+  return st;
+}
+
+/* All triangles of STEM.sheets must have become sheets. */
+static vg_status check_sheets(const char *path, const struct vg_mesh *m,
+                              struct vg_error *err)
+{
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const struct vg_patch *p = &m->patch[m->tri_patch[t]];
+    const uint32_t *v = m->tri[t];
+
+    if (p->is_sheet)
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: the triangle with points %u, %u, %u of sheet %d%s%s "
+                     "in its ." VG_SHEET_SUFFIX " file is not a face between "
+                     "two cells; remove the file if it belongs to another mesh",
+                     path, v[0] + 1, v[1] + 1, v[2] + 1, (int)p->id,
+                     *p->name ? " " : "", p->name);
+  }
+  return VG_OK;
+}
+
+/* Sheets need no entry in the .mapbc. */
+static void forgive_sheets(const struct vg_mesh *m,
+                           struct vg_mapbc_match *match)
+{
+  for (size_t i = 0; i < m->n_sheet && match->n_missing; i++)
+    match->n_missing -= m->sheet[i].bc == VG_BC_NONE &&
+                        m->sheet[i].bc_fun3d == VG_BC_NONE &&
+                        vg_mesh_find_patch(m, m->sheet[i].id) == SIZE_MAX;
+  for (size_t i = m->n_sheet ? m->n_patch : 0; i--;)
+    if (m->patch[i].bc == VG_BC_NONE && m->patch[i].bc_fun3d == VG_BC_NONE)
+      match->first_missing = m->patch[i].id;
+}
+
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err)
 {
@@ -372,7 +436,10 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
 
   VG_TRY(read_by_name(path, &m, &found, err));
   VG_TRY(vg_format_use_mapbc(path, &m, &found, err));
-  VG_TRY(vg_mesh_drop_inner(&m, &found.inner, err));
+  if (found.n_cell) VG_TRY(read_sheets(path, &m, err));
+  VG_TRY(vg_mesh_take_inner(&m, &found.inner, err));
+  VG_TRY(check_sheets(path, &m, err));
+  forgive_sheets(&m, &found.match);
   if (found.turned.loose_face >= found.inner.n_copy)
     found.turned.loose_face -= found.inner.n_copy;
   vg_mesh_move(out, &m);

@@ -25,7 +25,7 @@ struct vg_read_info {
   const char *mapbc;
   const char *format;          /* suffix in the table; static */
   struct vg_turned turned;     /* zero for formats without cells */
-  struct vg_inner_faces inner; /* faces between cells, which were removed */
+  struct vg_inner_faces inner; /* faces between cells */
   size_t n_cell;               /* number of cells in the file */
   int has_mapbc;               /* a .mapbc was used */
   int has_own_mapbc; /* STEM.mapbc was ignored because Vanguard wrote it */
@@ -58,6 +58,16 @@ int vg_format_is_tessellation(const char *path);
  * the format has one; 0 also if it cannot be read. */
 int vg_format_holds_cells(const char *path);
 
+/** Returns 1 if the format, given by its suffix, holds sheets
+ * (core/mesh/sheets.h). */
+int vg_format_holds_sheets(const char *suffix);
+
+/** *out: the file with the sheets of a .ugrid, in the same folder
+ * (io/stream/sheet_file.h); "" without such a file, and for other formats. To
+ * be freed. VG_ERR_MEMORY. */
+vg_status vg_format_sheet_file(const char *path, char **out,
+                               struct vg_error *err);
+
 /** All suffixes for a message, "stl, tri, ...". Static string. */
 const char *vg_format_list(void);
 
@@ -74,9 +84,10 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
                          struct vg_error *err);
 
 /** As vg_format_read, with conditions and names from info->mapbc, or from
- * STEM.mapbc if it exists, and without boundary faces that lie between two
- * cells (vg_mesh_drop_inner). info: the caller sets the members marked "in",
- * the function sets the others; may be NULL. */
+ * STEM.mapbc if it exists, and with faces between two cells as sheets: those
+ * that the boundary contains (vg_mesh_take_inner) and those of STEM.sheets.
+ * info: the caller sets the members marked "in", the function sets the others;
+ * may be NULL. */
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err);
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/mesh/gmsh_put.h"
 #include "io/stream/boundary.h"
 
@@ -74,6 +75,20 @@ static void put_head(struct vg_output *out, const struct vg_gmsh *g)
 
 /* --- entities --- */
 
+/* Does a patch bound the volume? Sheets are in it. */
+static int is_border(const struct vg_gmsh *g, size_t patch)
+{
+  return !is_empty(g, patch) && !g->frame->patch[patch].is_sheet;
+}
+
+static size_t count_borders(const struct vg_gmsh *g)
+{
+  size_t n = 0;
+
+  for (size_t p = 0; p < g->frame->n_patch; p++) n += is_border(g, p);
+  return n;
+}
+
 #define ENTITIES "$Entities\n"
 #define ENTITIES_END "\n$EndEntities\n"
 
@@ -82,7 +97,7 @@ static uint64_t entities_size(const struct vg_gmsh *g)
   /* tag, box, number of groups, group, number of bounding entities */
   uint64_t one = 4 + 6 * 8 + 8 + 4 + 8, size = 4 * 8 + g->n_surface * one;
 
-  if (count_cells(g)) size += one + 4 * g->n_surface;
+  if (count_cells(g)) size += one + 4 * count_borders(g);
   return strlen(ENTITIES) + size + strlen(ENTITIES_END);
 }
 
@@ -140,12 +155,12 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
     widen(all, box + 3);
   }
   if (has_cells) {
-    put_entity(out, g->volume, all, g->volume, g->n_surface);
+    put_entity(out, g->volume, all, g->volume, count_borders(g));
     for (size_t p = 0; p < g->frame->n_patch; p++) {
       int32_t inward = -tag_of(g, p); /* surfaces are oriented as our faces,
                                          inward */
 
-      if (!is_empty(g, p)) vg_output_i32(out, 1, &inward);
+      if (is_border(g, p)) vg_output_i32(out, 1, &inward);
     }
   }
   vg_output_text(out, ENTITIES_END);
@@ -435,15 +450,18 @@ vg_status vg_gmsh_write(const char *path, const struct vg_mesh *m,
                         struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
-  struct vg_gmsh g;
-  vg_status st = vg_gmsh_plan(path, m, &g, err);
+  struct vg_mesh view;
+  struct vg_gmsh g = { .frame = NULL };
+  vg_status st = vg_mesh_sheet_view(m, &view, err);
 
   if (st < 0) return st;
+  VG_TRY(vg_gmsh_plan(path, &view, &g, err));
   VG_TRY(vg_output_open(path, &out, err));
   vg_gmsh_put(&out, &g);
   st = vg_output_commit(&out, err);
 done:
   vg_output_release(&out);
   vg_gmsh_release(&g);
+  vg_mesh_sheet_view_release(&view, m);
   return st;
 }

@@ -26,7 +26,8 @@ struct vg_gmsh {
   uint64_t first[VG_GMSH_KINDS]; /* tag of the first cell */
 };
 
-/** Compute the layout. VG_ERR_INPUT: neither faces nor cells. Must be released
+/** Compute the layout. Patches with is_sheet do not bound the volume
+ * (vg_mesh_sheet_view). VG_ERR_INPUT: neither faces nor cells. Must be released
  * after success. */
 vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
                        struct vg_gmsh *g, struct vg_error *err);

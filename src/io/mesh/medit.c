@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/mesh/gmf.h"
 #include "io/stream/convention.h"
 
@@ -459,29 +460,41 @@ static vg_status write_file(const char *path, struct writer *w, int is_big,
   return vg_output_commit(&w->out, err);
 }
 
+/* version 0: the lowest one that holds the mesh. */
+static vg_status write_view(const char *path, const struct vg_mesh *m,
+                            int binary, int version, int is_big,
+                            struct vg_error *err)
+{
+  struct vg_mesh view;
+  struct writer w = { VG_OUTPUT_INIT, &view, binary, version };
+  vg_status st = vg_mesh_sheet_view(m, &view, err);
+
+  if (st < 0) return st;
+  if (!version) w.version = 2;
+  while (binary && !version && !version_holds(&view, w.version)) w.version++;
+  if (version > 4 || (version && !version_holds(&view, version)))
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: .meshb version %d does not exist or cannot hold the "
+                 "mesh; use version 4",
+                 path, version);
+  if (st >= 0) st = write_file(path, &w, is_big, err);
+  vg_mesh_sheet_view_release(&view, m);
+  return st;
+}
+
 vg_status vg_medit_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err)
 {
-  struct writer w = { VG_OUTPUT_INIT, m, 0, 2 };
-  size_t len = strlen(path);
+  const size_t len = strlen(path);
 
-  if (len < 6 || strcmp(path + len - 6, ".meshb"))
-    return write_file(path, &w, 0, err);
-  w.binary = 1;
-  while (!version_holds(m, w.version)) w.version++;
-  return write_file(path, &w, 0, err);
+  return write_view(path, m, len >= 6 && !strcmp(path + len - 6, ".meshb"), 0,
+                    0, err);
 }
 
 vg_status vg_medit_write_binary(const char *path, const struct vg_mesh *m,
                                 int version, int big_endian,
                                 struct vg_error *err)
 {
-  struct writer w = { VG_OUTPUT_INIT, m, 1, version };
-
-  if (version < 1 || version > 4 || !version_holds(m, version))
-    return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: .meshb version %d does not exist or cannot hold the "
-                   "mesh; use version 4",
-                   path, version);
-  return write_file(path, &w, big_endian, err);
+  /* 5 does not exist either. */
+  return write_view(path, m, 1, version < 1 ? 5 : version, big_endian, err);
 }

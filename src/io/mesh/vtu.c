@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/mesh/vtu_put.h"
 #include "io/stream/stream.h"
 
@@ -418,7 +419,7 @@ static vg_status number_points(const struct vg_mesh *m, uint32_t **list,
   return VG_OK;
 }
 
-vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
+static vg_status write_boundary(const char *path, const struct vg_mesh *m,
                                 const struct vg_vtu_field *fields, size_t n,
                                 struct vg_error *err)
 {
@@ -429,7 +430,6 @@ vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
   uint32_t *list = NULL, *number = NULL;
   vg_status st = number_points(m, &list, &number, &g.n_point, err);
 
-  assert(fields || !n);
   if (st < 0) return st;
   g.list = list;
   g.number = number;
@@ -438,6 +438,20 @@ vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
   st = write_grid(path, &g, err);
   free(list);
   free(number);
+  return st;
+}
+
+vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
+                                const struct vg_vtu_field *fields, size_t n,
+                                struct vg_error *err)
+{
+  struct vg_mesh view;
+  vg_status st;
+
+  assert((fields || !n) && (!n || !m->n_sheet));
+  st = vg_mesh_sheet_view(m, &view, err);
+  if (st >= 0) st = write_boundary(path, &view, fields, n, err);
+  vg_mesh_sheet_view_release(&view, m);
   return st;
 }
 

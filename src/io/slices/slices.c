@@ -136,6 +136,9 @@ vg_status vg_slices_check_boundary(const struct vg_slices *s,
   vg_status st = check_nodes(m->n_tri, 3, (const uint32_t *)m->tri, n,
                              "triangle", err);
 
+  if (st >= 0)
+    st = check_nodes(m->n_sheet_tri, 3, (const uint32_t *)m->sheet_tri, n,
+                     "triangle of a sheet", err);
   return st < 0 ? st
                 : check_nodes(m->n_quad, 4, (const uint32_t *)m->quad, n,
                               "quadrilateral", err);

@@ -41,7 +41,8 @@ int vg_slices_can_write(const char *form);
  * has a piece for every sequence of slices with about 2 M cells, in which each
  * slice has its own points; the cell data `subdomain` and `kind` are those of
  * the slices. Memory: a slice and 1 MB per thread; the boundary points for
- * cogsg and mapbc. VG_ERR_UNSUPPORTED: another form, counts that exceed its
+ * cogsg and mapbc. VG_ERR_UNSUPPORTED: another form, fluent.msh for a mesh with
+ * sheets, counts that exceed its
  * limits, or cells that it cannot hold. */
 vg_status vg_slices_write(struct vg_comm *comm, const struct vg_slices *s,
                           const char *stem, const char *form, int threads,

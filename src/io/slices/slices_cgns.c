@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/slices/slices_parts.h"
 
 #define BLOCK 4096
@@ -70,16 +71,19 @@ vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
                                const char *path, int threads,
                                struct vg_error *err)
 {
-  const struct vg_mesh frame = vg_slices_frame(s);
+  const struct vg_mesh plain = vg_slices_frame(s);
+  struct vg_mesh frame;
   struct vg_cgns c = { .frame = &frame };
   const struct vg_slice_file file = { path, 0, &c, put_frame, put_slice };
-  vg_status st = VG_OK;
+  vg_status st = vg_mesh_sheet_view(&plain, &frame, err);
 
-  if (!vg_comm_rank(comm)) st = vg_cgns_plan(path, &frame, NULL, &c, err);
+  if (st >= 0 && !vg_comm_rank(comm))
+    st = vg_cgns_plan(path, &frame, NULL, &c, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(share_places(comm, &c.places, err));
   st = vg_slice_file_write(&file, comm, s, threads, err);
 done:
   vg_cgns_release(&c);
+  vg_mesh_sheet_view_release(&frame, &plain);
   return st;
 }

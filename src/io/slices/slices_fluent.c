@@ -638,6 +638,11 @@ vg_status vg_slices_write_fluent(struct vg_comm *comm,
                        .frame = vg_slices_frame(s) };
   vg_status st;
 
+  if (s->boundary->n_sheet)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: a distributed mesh with sheets cannot be written in "
+                   "this form",
+                   path);
   for (int k = 1; k < VG_SLICE_KINDS; k++)
     w.first[k] = w.first[k - 1] + s->n_cell[k - 1];
   VG_TRY(vg_comm_agree(comm, prepare(&w, err), err));

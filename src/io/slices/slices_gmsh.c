@@ -2,6 +2,7 @@
 /* Writes a mesh in slices as one .msh with the bytes of vg_gmsh_write. The
  * bounding boxes of patches need the boundary points, which are collected from
  * the slices. */
+#include "core/mesh/sheets.h"
 #include "io/slices/slices_parts.h"
 #include "io/stream/shared_file.h"
 
@@ -59,12 +60,14 @@ vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
                                const char *path, int threads,
                                struct vg_error *err)
 {
-  const struct vg_mesh frame = vg_slices_frame(s);
+  const struct vg_mesh plain = vg_slices_frame(s);
+  struct vg_mesh frame;
   struct gmsh g = { .boundary = { 0, NULL, NULL } };
   const struct vg_slice_file file = { path, 0, &g, put_frame, put_slice };
   struct vg_shared_file *to;
-  vg_status st = vg_gmsh_plan(path, &frame, &g.file, err);
+  vg_status st = vg_mesh_sheet_view(&plain, &frame, err);
 
+  if (st >= 0) st = vg_gmsh_plan(path, &frame, &g.file, err);
   if (st >= 0) st = vg_slices_check_boundary(s, err);
   if (st >= 0) st = vg_boundary_points_new(s, &g.boundary, err);
   VG_TRY(vg_comm_agree(comm, st, err));
@@ -77,5 +80,6 @@ vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
 done:
   vg_boundary_points_release(&g.boundary);
   vg_gmsh_release(&g.file);
+  vg_mesh_sheet_view_release(&frame, &plain);
   return st;
 }

@@ -463,15 +463,21 @@ vg_status vg_ugrid_slices_open(const char *path, size_t slice_cells,
                                struct vg_ugrid_slices **out,
                                struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_ugrid_slices *u = vg_calloc(1, sizeof *u);
+  struct vg_ugrid_slices *u;
   struct vg_read_info found = { .mapbc = info->mapbc, .format = "ugrid" };
   struct vg_error why = VG_ERROR_INIT;
   struct vg_mesh m;
+  char *sheets;
   int is_whole;
   vg_status st;
 
   assert(path && slice_cells && out);
   *out = NULL;
+  VG_TRY(vg_format_sheet_file(path, &sheets, err));
+  is_whole = *sheets != 0;
+  free(sheets);
+  if (is_whole) return VG_OK;
+  u = vg_calloc(1, sizeof *u);
   if (!u) return vg_fail_memory(err, "a .ugrid file");
   u->fd = -1;
   u->path = strdup(path);
@@ -493,7 +499,8 @@ vg_status vg_ugrid_slices_open(const char *path, size_t slice_cells,
   }
   *info = found;
   *out = u;
-  return VG_OK;
+done:
+  return st;
 }
 
 void vg_ugrid_slices_close(struct vg_ugrid_slices *u)

@@ -18,8 +18,8 @@ struct vg_ugrid_slices;
  * uses the slices one slice with its points.
  * @param out     NULL if the file must be read as a whole: text, compressed, or
  *                with Fortran records; without cells; with boundary faces
- *                between two cells; or not valid, so that vg_mesh_read gives
- *                the reason. To be closed by the caller.
+ *                between two cells, or sheets in STEM.sheets; or not valid, so
+ * that vg_mesh_read gives the reason. To be closed by the caller.
  * @param info    as of vg_mesh_read, but turned.loose_face is 0
  * VG_ERR_IO, VG_ERR_MEMORY; the errors of a .mapbc. */
 vg_status vg_ugrid_slices_open(const char *path, size_t slice_cells,

@@ -15,6 +15,7 @@
 #include "core/geometry/predicates.h"
 #include "core/geometry/volume.h"
 #include "core/mesh/cell_faces.h"
+#include "core/mesh/sheets.h"
 
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)
@@ -235,14 +236,10 @@ size_t vg_mesh_turn_cells(struct vg_mesh *m)
  * UINT32_MAX. Of several faces with the same nodes the first is kept. */
 struct face_table {
   struct vg_table table;
-  unsigned char *found; /* [n_tri + n_quad] result of `meet` */
+  unsigned char *found; /* [n_tri + n_quad] sides with cells */
   size_t n_on;
   unsigned char *on; /* [n_on] is the point on the boundary? Points from n_on on
                         are not. */
-  /* Processes a face of a cell, listed inward, that may be on the boundary. */
-  void (*meet)(struct vg_mesh *m, struct face_table *t, const uint32_t *inward,
-               int width);
-  size_t n_turned;
 };
 
 static void make_key(const uint32_t *n, int width, uint32_t key[4])
@@ -343,29 +340,11 @@ static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
   return 0;
 }
 
-/* Process one face of a cell, listed inward: turn the boundary face with the
- * same nodes, unless another cell has been matched to it before. A
- * quadrilateral that visits the same nodes in another cyclic order is a
- * different face and counts as loose. */
-static void turn_face(struct vg_mesh *m, struct face_table *t,
-                      const uint32_t *inward, int width)
-{
-  uint32_t f = *find_face(m, t, inward, width), *node;
-  int w, forwards;
-
-  if (f == VG_TABLE_FREE || t->found[f]) return;
-  node = (uint32_t *)face_nodes(m, f, &w);
-  forwards = same_cycle(node, inward, w, 1);
-  if (!forwards && !same_cycle(node, inward, w, w - 1)) return;
-  t->found[f] = 1;
-  if (forwards) return;
-  swap(node, 1, w - 1);
-  t->n_turned++;
-}
-
 enum { SIDE_FRONT = 1, SIDE_BACK = 2, SIDE_BOTH = 3 };
 
-/* Record on which sides of a boundary face there are cells. */
+/* Record on which sides of a boundary face there are cells, given a face of a
+ * cell, listed inward. A quadrilateral that visits the same nodes in another
+ * cyclic order is a different face. */
 static void note_side(struct vg_mesh *m, struct face_table *t,
                       const uint32_t *inward, int width)
 {
@@ -397,7 +376,7 @@ static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
         node[k] = c[face[f][k]];
         all &= is_on(t, node[k]);
       }
-      if (all) t->meet(m, t, node, w);
+      if (all) note_side(m, t, node, w);
     }
   }
 }
@@ -410,11 +389,28 @@ static void meet_all(struct vg_mesh *m, struct face_table *t)
   meet_cells(m, t, m->n_hex, (const uint32_t *)m->hex, 8, vg_hex_face, 6);
 }
 
+/* Turns the faces that have a cell on their back only; returns their number.
+ * Faces between two cells keep their direction. */
+static size_t turn_faces(struct vg_mesh *m, const unsigned char *found)
+{
+  size_t n = 0;
+
+  for (size_t f = 0; f < m->n_tri + m->n_quad; f++) {
+    int width;
+    uint32_t *node = (uint32_t *)face_nodes(m, f, &width);
+
+    if (found[f] != SIDE_BACK) continue;
+    swap(node, 1, width - 1);
+    n++;
+  }
+  return n;
+}
+
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err)
 {
   struct vg_turned result = { 0, 0, 0 };
-  struct face_table t = { .meet = turn_face };
+  struct face_table t = { .n_on = 0 };
   vg_status st;
 
   assert(m);
@@ -423,7 +419,7 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
     if (st < 0) return st;
     result.cell = vg_mesh_turn_cells(m);
     meet_all(m, &t);
-    result.face = t.n_turned;
+    result.face = turn_faces(m, t.found);
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
       result.loose_face += !t.found[f];
     face_release(&t);
@@ -447,7 +443,6 @@ vg_status vg_face_sides_new(const struct vg_mesh *m, struct vg_face_sides **out,
 
   assert(m && out);
   if (!t) return vg_fail_memory(err, "a table of the boundary faces");
-  t->table.meet = note_side;
   t->boundary = (struct vg_mesh){
     .n_tri = m->n_tri, .tri = m->tri, .n_quad = m->n_quad, .quad = m->quad
   };
@@ -476,14 +471,7 @@ int vg_face_sides_turn(const struct vg_face_sides *t, struct vg_mesh *m,
   *n = 0;
   for (size_t f = 0; f < n_face; f++)
     if (t->table.found[f] == SIDE_BOTH) return 0;
-  for (size_t f = 0; f < n_face; f++) {
-    int width;
-    uint32_t *node = (uint32_t *)face_nodes(m, f, &width);
-
-    if (t->table.found[f] != SIDE_BACK) continue;
-    swap(node, 1, width - 1);
-    ++*n;
-  }
+  *n = turn_faces(m, t->table.found);
   return 1;
 }
 
@@ -495,6 +483,16 @@ void vg_face_sides_free(struct vg_face_sides *t)
 }
 
 /* --- faces between cells --- */
+
+/* The faces of a mesh while those between cells are taken out. */
+struct inner_faces {
+  struct vg_mesh *m;
+  struct vg_inner_faces *found;
+  unsigned char *is_inner; /* [n_tri + n_quad] 1: sheet, 2: removed */
+  size_t *sheet;           /* [n_patch] triangles that become a sheet; later
+                              its number */
+  size_t *gone, *kept;     /* [n_patch] faces removed, faces that stay */
+};
 
 static uint32_t *patch_of(const struct vg_mesh *m, size_t f)
 {
@@ -515,31 +513,42 @@ static void list_patch(struct vg_inner_faces *found, const struct vg_patch *p,
     strcpy(found->patches + at, ", ...");
 }
 
-/* Remove the patches without faces that had inner[p] faces between cells. */
-static void drop_patches(struct vg_mesh *m, const size_t *inner, size_t *kept,
-                         struct vg_inner_faces *found)
+/* Set is_inner for the faces that have cells on both sides: 1 for the first
+ * copy of a triangle, 2 for other copies and quadrilaterals. Count them by
+ * patch. */
+static void find_inner(struct inner_faces *q, const struct face_table *t)
 {
-  size_t n_face = m->n_tri + m->n_quad, n = 0;
+  const struct vg_mesh *m = q->m;
 
-  memset(kept, 0, m->n_patch * sizeof *kept);
-  for (size_t f = 0; f < n_face; f++) kept[*patch_of(m, f)]++;
-  for (size_t p = 0; p < m->n_patch; p++) {
-    int is_gone = inner[p] && !kept[p];
+  for (size_t f = 0; f < m->n_tri + m->n_quad; f++) {
+    const uint32_t patch = *patch_of(m, f);
+    int width;
+    const uint32_t *node = face_nodes(m, f, &width);
+    uint32_t first = *find_face(m, t, node, width);
 
-    if (inner[p]) list_patch(found, m->patch + p, inner[p]);
-    kept[p] = n;
-    if (!is_gone) m->patch[n++] = m->patch[p];
+    q->is_inner[f] = t->found[first] != SIDE_BOTH ? 0
+                   : width == 3 && first == f     ? 1
+                                                  : 2;
+    q->kept[patch] += !q->is_inner[f];
+    q->sheet[patch] += q->is_inner[f] == 1;
+    q->gone[patch] += q->is_inner[f] == 2;
+    q->found->n_sheet_face += q->is_inner[f] == 1;
+    q->found->n_face += q->is_inner[f] == 2;
+    q->found->n_copy += q->is_inner[f] && first != f;
   }
-  m->n_patch = n;
-  for (size_t f = 0; f < n_face; f++)
-    *patch_of(m, f) = (uint32_t)kept[*patch_of(m, f)];
 }
 
-static void drop_faces(struct vg_mesh *m, const unsigned char *is_inner)
+static void take_faces(struct inner_faces *q)
 {
+  struct vg_mesh *m = q->m;
+  const unsigned char *is_inner = q->is_inner;
   size_t n = 0;
 
   for (size_t i = 0; i < m->n_tri; i++) {
+    if (is_inner[i] == 1) {
+      memcpy(m->sheet_tri[m->n_sheet_tri], m->tri[i], sizeof *m->tri);
+      m->sheet_of[m->n_sheet_tri++] = m->tri_patch[i];
+    }
     if (is_inner[i]) continue;
     memmove(m->tri[n], m->tri[i], sizeof *m->tri);
     m->tri_patch[n++] = m->tri_patch[i];
@@ -555,52 +564,76 @@ static void drop_faces(struct vg_mesh *m, const unsigned char *is_inner)
   m->n_quad = n;
 }
 
-/* Set is_inner for all copies of the faces that have cells on both sides, and
- * count them, also per patch. */
-static void find_inner(const struct vg_mesh *m, const struct face_table *t,
-                       unsigned char *is_inner, size_t *inner,
-                       struct vg_inner_faces *found)
+/* Moves the patches that are sheets to m->sheet, and removes those without
+ * other faces. */
+static void take_patches(struct inner_faces *q)
 {
-  for (size_t f = 0; f < m->n_tri + m->n_quad; f++) {
-    int width;
-    const uint32_t *node = face_nodes(m, f, &width);
+  struct vg_mesh *m = q->m;
+  const size_t n_face = m->n_tri + m->n_quad;
+  size_t n = 0;
 
-    uint32_t first = *find_face(m, t, node, width);
+  for (size_t p = 0; p < m->n_patch; p++) {
+    const int is_gone = (q->sheet[p] || q->gone[p]) && !q->kept[p];
 
-    is_inner[f] = t->found[first] == SIDE_BOTH;
-    if (!is_inner[f]) continue;
-    inner[*patch_of(m, f)]++;
-    found->n_face++;
-    found->n_copy += first != f;
+    if (q->gone[p]) list_patch(q->found, m->patch + p, q->gone[p]);
+    if (q->sheet[p]) {
+      m->sheet[m->n_sheet] = m->patch[p];
+      m->sheet[m->n_sheet].is_sheet = 1;
+      q->sheet[p] = m->n_sheet++;
+    }
+    q->kept[p] = n;
+    if (!is_gone) m->patch[n++] = m->patch[p];
   }
+  m->n_patch = n;
+  for (size_t f = 0; f < n_face; f++)
+    *patch_of(m, f) = (uint32_t)q->kept[*patch_of(m, f)];
+  for (size_t t = 0; t < m->n_sheet_tri; t++)
+    m->sheet_of[t] = (uint32_t)q->sheet[m->sheet_of[t]];
 }
 
-vg_status vg_mesh_drop_inner(struct vg_mesh *m, struct vg_inner_faces *found,
+static vg_status take_inner(struct inner_faces *q, struct vg_error *err)
+{
+  struct vg_mesh *m = q->m;
+  const size_t n = q->found->n_sheet_face;
+
+  if (!n && !q->found->n_face) return VG_OK;
+  m->sheet_tri = vg_alloc(n, sizeof *m->sheet_tri);
+  m->sheet_of = vg_alloc(n, sizeof *m->sheet_of);
+  m->sheet = vg_alloc(m->n_patch, sizeof *m->sheet);
+  if (!m->sheet_tri || !m->sheet_of || !m->sheet) {
+    vg_mesh_drop_sheets(m);
+    return vg_fail_memory(err, "the faces between cells");
+  }
+  take_faces(q);
+  take_patches(q);
+  return VG_OK;
+}
+
+vg_status vg_mesh_take_inner(struct vg_mesh *m, struct vg_inner_faces *found,
                              struct vg_error *err)
 {
-  struct face_table t = { .meet = note_side };
-  unsigned char *is_inner;
-  size_t *inner, *kept;
+  struct face_table t = { .n_on = 0 };
+  struct inner_faces q = { .m = m, .found = found };
   vg_status st = VG_OK;
 
-  assert(m && found);
+  assert(m && found && !m->n_sheet_tri && !m->sheet);
   memset(found, 0, sizeof *found);
   if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) return VG_OK;
   VG_TRY(face_build(&t, m, err));
   meet_all(m, &t);
-  is_inner = vg_calloc(m->n_tri + m->n_quad, 1);
-  inner = vg_calloc(m->n_patch, sizeof *inner);
-  kept = vg_calloc(m->n_patch, sizeof *kept);
-  if (!is_inner || !inner || !kept)
+  q.is_inner = vg_calloc(m->n_tri + m->n_quad, 1);
+  q.sheet = vg_calloc(m->n_patch, sizeof *q.sheet);
+  q.gone = vg_calloc(m->n_patch, sizeof *q.gone);
+  q.kept = vg_calloc(m->n_patch, sizeof *q.kept);
+  if (!q.is_inner || !q.sheet || !q.gone || !q.kept)
     st = vg_fail_memory(err, "the faces between cells");
-  else find_inner(m, &t, is_inner, inner, found);
-  if (found->n_face) {
-    drop_faces(m, is_inner);
-    drop_patches(m, inner, kept, found);
-  }
-  free(is_inner);
-  free(inner);
-  free(kept);
+  else find_inner(&q, &t);
+  if (st >= 0) st = take_inner(&q, err);
+  if (st < 0) memset(found, 0, sizeof *found);
+  free(q.is_inner);
+  free(q.sheet);
+  free(q.gone);
+  free(q.kept);
   face_release(&t);
 done:
   return st;
@@ -632,6 +665,7 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->pri = NULL;
   m->hex = NULL;
   m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
+  vg_mesh_drop_sheets(m);
   if (!new_index) return; /* keeping unused points is harmless */
   memset(new_index, 0xff, m->n_point * sizeof *new_index);
   mark_used(3 * m->n_tri, (uint32_t *)m->tri, new_index);

@@ -56,25 +56,33 @@ void vg_face_sides_free(struct vg_face_sides *t);
 
 /* Faces listed as boundary that lie between two cells. */
 struct vg_inner_faces {
-  size_t n_face;     /* faces removed */
-  size_t n_copy;     /* of these: faces whose points an earlier face has */
-  char patches[160]; /* their patches with the number of faces of each:
-                        "interface (120), wake (48)" */
+  size_t n_sheet_face; /* triangles that became sheets */
+  size_t n_face;       /* faces removed: quadrilaterals, and copies of faces */
+  size_t n_copy;       /* of these: faces whose points an earlier face has */
+  char patches[160];   /* their patches with the number of faces of each:
+                          "interface (120), wake (48)" */
 };
 
 /* Format of a note: path, n_face, patches. */
 #define VG_INNER_FACES_NOTE                                                    \
-  "%s: %zu boundary faces lie between two cells; they were removed, because "  \
-  "only faces with one cell bound a mesh (patches: %s)"
+  "%s: %zu boundary faces lie between two cells and are quadrilaterals or "    \
+  "copies of other faces; they were removed (patches: %s)"
 
-/** Remove the boundary faces that join two cells on opposite sides, and the
- * patches that have no other faces. Programs write them for the interface of
- * two volumes (Gmsh) or of two kinds of cells (Mmg). A face that is listed
- * several times is removed each time. The order of faces and patches is kept.
- * Indices must be valid. O(n) time; memory O(points + boundary).
- * @param found  all zero if nothing was removed
+/* Format of a note: path, n_sheet_face. */
+#define VG_SHEET_FACES_NOTE                                                    \
+  "%s: %zu triangles lie between two cells; they are sheets, which are no "    \
+  "part of the boundary"
+
+/** Take the boundary faces that join two cells on opposite sides out of the
+ * boundary, with the patches that have no other faces. Triangles become sheets
+ * (core/mesh/sheets.h); other faces, and further copies of a face, are removed.
+ * Programs write such faces for sheets, and for the interface of two volumes
+ * (Gmsh) or of two kinds of cells (Mmg). The order of faces and patches is
+ * kept. Indices must be valid. O(n) time; memory O(points + boundary).
+ * @param m      without sheets
+ * @param found  all zero without such faces
  * VG_ERR_MEMORY: the mesh is unchanged. */
-vg_status vg_mesh_drop_inner(struct vg_mesh *m, struct vg_inner_faces *found,
+vg_status vg_mesh_take_inner(struct vg_mesh *m, struct vg_inner_faces *found,
                              struct vg_error *err);
 
 /* Up to this magnitude, products of three coordinate differences are exact

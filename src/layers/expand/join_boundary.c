@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "layers/expand/join_plan.h"
 #include "layers/expand/pairs.h"
 
@@ -257,6 +258,7 @@ vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err)
   VG_TRY(reserve_boundary(w.m, err));
   fill_boundary(&w);
   VG_TRY(copy_patches(&w, err));
+  st = vg_mesh_part_sheets(w.m, err);
 done:
   free(w.stays);
   free(w.paired);

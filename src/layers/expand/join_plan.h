@@ -19,7 +19,7 @@ struct vg_join_plan {
   /* First points of each kind: side faces, new points of remeshed patches,
    * inner points of layers, field; and the number of all points. */
   size_t first_flank, first_new, first_inner, first_field, n_point;
-  struct vg_mesh boundary; /* Patches and faces. */
+  struct vg_mesh boundary; /* Patches and faces; sheets. */
 };
 
 /** Checks that a mesh with these counts fills the front. VG_ERR_INPUT if it

@@ -265,7 +265,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   st = vg_domain_rims(&b->surface, &n, &rim, &why);
   if (b->rim_gap > 0) {
     free(rim);
-    if (*b->read->settings.baffles)
+    if (vg_boundary_wants_inner(b))
       return vg_fail(err, VG_ERR_GEOMETRY,
                      "%s: the surface is open, but its open edges face each "
                      "other at a distance of at most %.3g: weld them in the "

@@ -31,22 +31,27 @@ static vg_status refuse_changes(const struct vg_boundary *b,
                    : strcmp(s->mesher, "builtin") ? "mesher"
                    : vg_boundary_is_stretched(b)  ? "stretched sizes"
                                                   : NULL;
+  char from[VG_INNER_SOURCE];
 
   if (!what) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: inner surfaces (baffles %s) cannot be combined with %s; "
+                 "%s: inner surfaces (%s) cannot be combined with %s; "
                  "change that setting, and mesh a surface that has the "
                  "requested triangles already",
-                 b->read->files.stem, s->baffles, what);
+                 b->read->files.stem, vg_inner_source(s, from, sizeof from),
+                 what);
 }
 
 static vg_status refuse_all(const struct vg_boundary *b, struct vg_error *err)
 {
+  char from[VG_INNER_SOURCE];
+
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: all triangles are in inner surfaces (baffles %s), so "
+                 "%s: all triangles are in inner surfaces (%s), so "
                  "that no surface bounds the fluid; add an outer boundary to "
                  "the surface, or remove patches from the list",
-                 b->read->files.stem, b->read->settings.baffles);
+                 b->read->files.stem,
+                 vg_inner_source(&b->read->settings, from, sizeof from));
 }
 
 static int has_name(const struct vg_mesh *m, const char *name)
@@ -67,8 +72,9 @@ static void name_back(const struct vg_mesh *m, const char *front, int32_t id,
 }
 
 /* Adds a patch for the other side of patch i, with a new number and the same
- * conditions. */
-static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
+ * conditions. That of a sheet exists only until the mesh is complete. */
+static vg_status add_back(struct vg_boundary *b, size_t i, int role,
+                          struct vg_error *err)
 {
   struct vg_mesh *m = &b->surface;
   struct vg_patch *back;
@@ -92,12 +98,30 @@ static vg_status add_back(struct vg_boundary *b, size_t i, struct vg_error *err)
   back->family = m->patch[i].family;
   m->patch[i].inner = VG_INNER_FRONT;
   back->inner = VG_INNER_BACK;
-  vg_note(
-    b->notes,
-    "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
-    (int)m->patch[i].id, *name ? " " : "", m->patch[i].name, (int)back->id,
-    *name ? " " : "", back->name);
+  m->patch[i].is_sheet = back->is_sheet = role == VG_PATCH_SHEET;
+  if (role == VG_PATCH_SHEET)
+    vg_note(b->notes,
+            "patch %d%s%s is a sheet: its triangles are faces between cells",
+            (int)m->patch[i].id, *name ? " " : "", m->patch[i].name);
+  else
+    vg_note(
+      b->notes,
+      "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
+      (int)m->patch[i].id, *name ? " " : "", m->patch[i].name, (int)back->id,
+      *name ? " " : "", back->name);
   return VG_OK;
+}
+
+/* Backs of baffles first: their numbers do not depend on sheets. */
+static vg_status add_backs(struct vg_boundary *b, size_t n, const uint8_t *role,
+                           struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int r = VG_PATCH_BAFFLE; r <= VG_PATCH_SHEET; r++)
+    for (size_t i = 0; i < n && st >= 0; i++)
+      if (role[i] == r) st = add_back(b, i, r, err);
+  return st;
 }
 
 /* Drops the points of m that only triangles of `inner` have. Other points that
@@ -161,15 +185,13 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
 {
   struct vg_mesh *m = &b->surface;
   const size_t n_patch = m->n_patch;
-  uint8_t *on = vg_calloc(n_patch, 1);
+  uint8_t *role = vg_calloc(n_patch, 1);
   vg_status st = VG_OK;
 
-  if (!on) return vg_fail_memory(err, "the patches");
+  if (!role) return vg_fail_memory(err, "the patches");
   VG_TRY(refuse_changes(b, err));
-  VG_TRY(vg_patch_list_mark("baffles", b->read->settings.baffles, m, n_patch,
-                            on, err));
-  for (size_t i = 0; i < n_patch; i++)
-    if (on[i]) VG_TRY(add_back(b, i, err));
+  VG_TRY(vg_inner_roles(&b->read->settings, m, role, err));
+  VG_TRY(add_backs(b, n_patch, role, err));
   VG_TRY(split_off(m, &b->inner, err));
   if (!m->n_tri) VG_TRY(refuse_all(b, err));
   vg_note(
@@ -179,7 +201,7 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
     b->inner.n_tri);
   b->is_remeshed = 0;
 done:
-  free(on);
+  free(role);
   return st;
 }
 
@@ -238,7 +260,8 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   if (*list)
     snprintf(
       text, size,
-      "; if fluid is on both sides of its open sheets, give --baffles %s",
+      "; if fluid is on both sides of its open sheets, give --baffles %s (or "
+      "--sheets)",
       list);
   return *list != 0;
 }
@@ -364,16 +387,21 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
   uint8_t *is_inner = vg_calloc(n_patch, 1);
   uint32_t *back = vg_calloc(n_patch, sizeof *back);
   struct vg_inner_report r;
-  uint32_t next = 0;
+  uint32_t next[2] = { 0, 0 }; /* of baffles and of sheets */
   vg_status st = is_inner && back ? VG_OK : vg_fail_memory(err, "the patches");
 
   VG_TRY(st);
-  /* Back sides were added in the order of the patches. */
+  /* Back sides of each kind were added in the order of the patches. */
   for (uint32_t i = 0; i < n_patch; i++) {
+    const int32_t is_sheet = all->patch[i].is_sheet;
+    uint32_t *k = &next[is_sheet];
+
     is_inner[i] = all->patch[i].inner == VG_INNER_FRONT;
     if (!is_inner[i]) continue;
-    while (all->patch[next].inner != VG_INNER_BACK) next++;
-    back[i] = next++;
+    while (all->patch[*k].inner != VG_INNER_BACK ||
+           all->patch[*k].is_sheet != is_sheet)
+      ++*k;
+    back[i] = (*k)++;
   }
   VG_TRY(vg_inner_double(all, is_inner, back, &r, err));
   VG_TRY(extend_check(&b->check, b->surface.n_tri, all->n_tri, err));

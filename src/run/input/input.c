@@ -379,6 +379,8 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
             "%s: %zu boundary faces pointed out of their cells; their "
             "orientation was reversed",
             path, info.turned.face);
+  if (info.inner.n_sheet_face)
+    vg_note(r->notes, VG_SHEET_FACES_NOTE, path, info.inner.n_sheet_face);
   if (info.inner.n_face)
     vg_note(r->notes, VG_INNER_FACES_NOTE, path, info.inner.n_face,
             info.inner.patches);

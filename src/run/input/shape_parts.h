@@ -21,9 +21,28 @@ int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 /* run/input/inner_surface.c
  * ------------------------------------------------------ */
 
-/** Moves the triangles of the patches in the setting `baffles` to b->inner, and
- * adds patches for their other sides. VG_ERR_INPUT for patches that the surface
- * does not have, VG_ERR_UNSUPPORTED for settings that change the surface. */
+/** 1 if patches are inner surfaces: by the settings `baffles` and `sheets`, or
+ * by the column `role` of the table `patches`. */
+int vg_boundary_wants_inner(const struct vg_boundary *b);
+
+#define VG_INNER_SOURCE 200
+
+/** Where the inner surfaces are requested, for messages: "baffles fin*, sheets
+ * 7, the table patches". Returns text. */
+const char *vg_inner_source(const struct vg_settings *s, char *text,
+                            size_t size);
+
+/** The roles of the patches of m that are inner surfaces.
+ *
+ * @param role  out: [m->n_patch] VG_PATCH_AUTO, VG_PATCH_BAFFLE, VG_PATCH_SHEET
+ * VG_ERR_INPUT for a patch that the surface does not have, and for a patch with
+ * two roles; the message names both requests. VG_ERR_MEMORY. */
+vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
+                         uint8_t *role, struct vg_error *err);
+
+/** Moves the triangles of inner surfaces to b->inner, and adds patches for
+ * their other sides. VG_ERR_INPUT for patches that the surface does not have,
+ * VG_ERR_UNSUPPORTED for settings that change the surface. */
 vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err);
 
 /** Checks the closed surface together with b->inner, which has triangles, and

@@ -141,7 +141,10 @@ static vg_status take_rows(struct vg_boundary *b, size_t n,
   }
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < view.n_patch; k++)
-      if (view.patch[k].id == old[i].id) view.patch[k].hard = old[i].hard;
+      if (view.patch[k].id == old[i].id) {
+        view.patch[k].hard = old[i].hard;
+        view.patch[k].role = old[i].role;
+      }
   free(b->row);
   b->row = view.patch;
   b->n_row = view.n_patch;
@@ -189,7 +192,7 @@ vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
   for (size_t i = 0; i < b->surface.n_patch; i++) {
     struct vg_patch *patch = &b->surface.patch[i];
 
-    if (!is_unset(patch) || !has_faces[i]) continue;
+    if (!is_unset(patch) || !has_faces[i] || patch->is_sheet) continue;
     if (n++ < SHOWN_PATCHES)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch->id);
@@ -535,7 +538,7 @@ vg_status vg_boundary_shape(struct vg_read *read,
   vg_mesh_keep_boundary(&b->surface);
   b->require_bc = has_conditions(&b->surface);
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
-  if (*read->settings.baffles) {
+  if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
     VG_TRY(vg_boundary_take_inner(b, err));
     VG_TRY(vg_patch_rows_resolve(&read->settings, &b->surface, err));

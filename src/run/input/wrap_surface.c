@@ -156,10 +156,10 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   *text = 0;
   if (b->remedy != VG_REMEDY_NOW) b->remedy = VG_REMEDY_ASKED;
   if (!b->model.cad && !b->read->settings.wrap && !b->read->settings.weld &&
-      !*b->read->settings.baffles && vg_boundary_suggest_inner(b, text, size))
+      !vg_boundary_wants_inner(b) && vg_boundary_suggest_inner(b, text, size))
     return;
   if (b->remedy != VG_REMEDY_NOW || !vg_wrap_is_available(NULL, 0) ||
-      b->read->settings.wrap > 0 || *b->read->settings.baffles ||
+      b->read->settings.wrap > 0 || vg_boundary_wants_inner(b) ||
       b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||
       n[VG_DEFECT_NO_BC] == b->check.n_defect)
     return;

@@ -11,6 +11,7 @@
 #include "core/fill/fill.h"
 #include "core/flow/flow.h"
 #include "core/judge/quality.h"
+#include "core/judge/sheet_sides.h"
 #include "core/mesh/mesh.h"
 #include "core/surface/surface_check.h"
 #include "partition/solver/solver.h"
@@ -47,6 +48,14 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err);
 /** NULL if out of memory. */
 json_t *vg_report_patches_json(const struct vg_mesh *m);
+
+/** Sheets of m with the findings r [n_sheet]: number, triangles, cells on the
+ * side of the normals ("before") and on the other side, area and name. Without
+ * sheets, or if r is NULL, the text is empty and the list has no items. */
+void vg_report_sheets_text(FILE *to, const struct vg_mesh *m,
+                           const struct vg_sheet_report *r);
+json_t *vg_report_sheets_json(const struct vg_mesh *m,
+                              const struct vg_sheet_report *r);
 
 /** Unit of length (enum vg_cad_unit), shells, repairs, triangle quality, and
  * the number of defects of each kind with a description of the first `shown`

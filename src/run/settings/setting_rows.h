@@ -78,6 +78,12 @@ VG_TEXT_ROW(plain, baffles, VG_LIST_MAX, "baffles", "",
   .pattern = vg_patch_list_pattern, .help = "Patches that are inner surfaces: "
   "sheets of zero thickness with fluid on both sides, by number or name, as in "
   "7,fin*; each becomes two patches, NAME and NAME_back")
+VG_TEXT_ROW(plain, sheets, VG_LIST_MAX, "sheets", "",
+  .topic = VG_TOPIC_SURFACE,
+  .unit = "", .check = vg_patch_list_check,
+  .pattern = vg_patch_list_pattern, .help = "Patches that become named faces "
+  "between cells, through which the mesh continues: actuator disks, wakes, "
+  "planes for monitors, by number or name, as in 7,disk*")
 VG_ROW(WORD, cad, unit, "unit", cad.unit,
   .use = VG_USE_ALWAYS, .words = unit_words, .unit = "", .help = "Unit of "
   "length of the mesh. A CAD model, and a surface with a file_unit, are "

@@ -156,6 +156,9 @@ static const struct vg_param farfield_columns[] = {
   .offset = offsetof(struct vg_patch_row, field),                              \
   .size = sizeof((struct vg_patch_row *)0)->field
 
+static const char *const role_words[] = { "auto", "wall", "baffle", "sheet",
+                                          NULL };
+
 static const struct vg_param patch_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_patch_row, id_name), .required = 1,
     .help = "Number or name of the patch in the surface file (* and ? are "
@@ -170,6 +173,9 @@ static const struct vg_param patch_columns[] = {
     .help = "New name of the patch; \"\": as in the input" },
   { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "",
     .help = "Keep the borders of this patch when the surface is remeshed" },
+  { "role", AT(role), .type = VG_PARAM_WORD, .words = role_words, .unit = "",
+    .help = "wall: fluid on one side; baffle, sheet: an inner surface, as in "
+            "the settings baffles and sheets; auto: by these settings" },
 };
 
 #undef AT

@@ -38,10 +38,19 @@ struct vg_farfield_row {
   double mach, upstream, downstream, radial, flow[3]; /* of VG_DOMAIN_MACH */
 };
 
+/** What a patch is in the mesh. */
+enum vg_patch_role {
+  VG_PATCH_AUTO, /* as by the lists `baffles` and `sheets` */
+  VG_PATCH_WALL, /* part of the boundary, with fluid on one side */
+  VG_PATCH_BAFFLE,
+  VG_PATCH_SHEET
+};
+
 /** Name and condition of a patch. */
 struct vg_patch_row {
   int32_t id, bc;            /* bc: USM3D or FUN3D code */
   int hard;                  /* 1: remeshing preserves the patch borders */
+  int role;                  /* enum vg_patch_role */
   char name[VG_NAME_MAX];    /* "": as in the input */
   char id_name[VG_NAME_MAX]; /* a name or pattern instead of id; "": id is
                                 used */

@@ -14,10 +14,12 @@
 #include "base/helper/helper.h"
 #include "base/memory.h"
 #include "io/cgns/cgns.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
 #include "io/slices/slices.h"
+#include "io/stream/sheet_file.h"
 #include "io/vgrid/mapbc.h"
 #include "partition/store/store.h"
 #include "run/common/folder.h"
@@ -275,6 +277,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
     if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
     if (st >= 0) st = refuse_absent(o->item[i], err);
   }
+  if (st >= 0) st = vg_outputs_check_sheets(o, &p->asked, err);
   return st < 0 ? st : add_conditions(o, err);
 }
 
@@ -306,7 +309,7 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   if (!hits_input(o, p, "mapbc")) return VG_OK;
   st = vg_mapbc_read(p->read.files.mapbc, &bc, err);
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
-    int found = 0;
+    int found = m->patch[i].is_sheet; /* no part of the boundary */
 
     for (size_t j = 0; j < bc.n; j++) found |= bc.entry[j].id == m->patch[i].id;
     if (!found)
@@ -569,8 +572,19 @@ static vg_status write_item(struct writing *w, const char *item,
 {
   if (!strcmp(item, "mapbc") || !strcmp(item, "fun3d.mapbc"))
     return write_conditions(w, item, err);
+  /* A sheet has a zone of its own among the faces between cells. */
+  if (!strcmp(item, VG_FLUENT_SUFFIX) && w->mesh->boundary->n_sheet)
+    return write_whole(w, item, err);
   return vg_slices_can_write(item) ? write_slices(w, item, err)
                                    : write_whole(w, item, err);
+}
+
+static uint64_t cells_of(const struct vg_slices *s)
+{
+  uint64_t n = 0;
+
+  for (int k = 0; k < VG_SLICE_KINDS; k++) n += s->n_cell[k];
+  return n;
 }
 
 static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
@@ -641,6 +655,10 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   assert(!o->n_open && o->temp_dir);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (!vg_slices_is_ugrid(o->item[i])) st = write_item(&w, o->item[i], err);
+  if (st >= 0 && !o->is_guest && vg_outputs_need_sheets(o))
+    st = vg_outputs_sheets(o, mesh->boundary, mesh->n_point, cells_of(mesh),
+                           err);
+  st = vg_comm_agree(comm, st, err);
   if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
   if (st >= 0 && !o->is_guest && layers->is_on)
     st = write_walls(o, p, layers, err);
@@ -738,6 +756,18 @@ static vg_status add_moves(struct vg_outputs *o,
   return st;
 }
 
+static vg_status drop_sheets(struct vg_outputs *o, struct vg_error *err)
+{
+  char *name;
+  vg_status st;
+
+  if (asprintf(&name, "%s." VG_SHEET_SUFFIX, o->name) < 0)
+    return vg_fail_memory(err, "the output paths");
+  st = vg_commit_add(&o->commit, VG_MOVE_REMOVE, "", name, err);
+  free(name);
+  return st;
+}
+
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -746,6 +776,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
   if (vg_print_is_lost()) st = vg_fail_memory(err, "the report");
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     if (!o->file[i].keep_old) st = add_moves(o, &o->file[i], err);
+  if (st >= 0 && o->drops_sheets) st = drop_sheets(o, err);
   if (st >= 0) st = vg_commit_run(&o->commit, err);
   close_commit(o);
   return st;

@@ -25,6 +25,7 @@ struct vg_outputs {
   size_t n_open;     /* Number of entries of `open`. */
   uint64_t put_time; /* Nanoseconds in vg_outputs_put, all threads. */
   struct vg_slices_ugrid *open[VG_WRITE_ITEMS];
+  int drops_sheets; /* 1: STEM.sheets of an earlier mesh is removed. */
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
    * follows the name without a dot. */
@@ -57,6 +58,24 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
  * to vg_outputs_temp_path. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err);
+
+/** Is the mesh written in a format to which STEM.sheets belongs? */
+int vg_outputs_need_sheets(const struct vg_outputs *o);
+
+/** VG_ERR_INPUT if sheets are requested, and none of the formats holds them. */
+vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
+                                  const struct vg_settings *s,
+                                  struct vg_error *err);
+
+/** Writes the sheets of m to STEM.sheets, which is added to the files. If m has
+ * no sheets and a .ugrid is among the files, with which it would be read, such
+ * a file of an earlier mesh is removed by vg_outputs_commit. On rank 0, after
+ * the files of the mesh have been written.
+ *
+ * @param n_point, n_cell  of the whole mesh */
+vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
+                            uint64_t n_point, uint64_t n_cell,
+                            struct vg_error *err);
 
 /** Parses the write list and determines where files are written. Refuses files
  * that would overwrite an input of p.

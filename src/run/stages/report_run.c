@@ -56,6 +56,10 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
+  if (r->run->sheets)
+    json_object_set_new(o, "sheets",
+                        vg_report_sheets_json(r->run->slices.boundary,
+                                              r->run->sheets));
   json_object_set_new(o, "limits_missed",
                       vg_report_mesh_limits_json(&p->asked, &r->run->judge));
   json_object_set_new(o, "fill",
@@ -201,6 +205,7 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
     print_count(to, "hexahedra", m->slices.n_cell[VG_SLICE_HEX]);
   if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
+  vg_report_sheets_text(to, m->slices.boundary, m->sheets);
   if (m->parts) {
     fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/version.h"
+#include "core/mesh/sheets.h"
 #include "layers/columns/share.h"
 #include "layers/relax/relax.h"
 #include "partition/advance/ways.h"
@@ -402,6 +403,7 @@ static vg_status prepare_flat(const struct vg_run *r,
 
 struct put {
   struct vg_run *run;
+  struct vg_sheet_sides *sides; /* NULL without sheets */
   struct vg_display *show;
 };
 
@@ -412,8 +414,39 @@ static vg_status put_slice(void *context, const struct vg_slice *slice,
   struct vg_run *r = p->run;
   vg_status st = vg_display_stopped(p->show, err);
 
+  if (st >= 0) vg_sheet_sides_add(p->sides, slice);
   if (st >= 0) st = vg_outputs_put(r->outputs, slice, err);
   return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
+}
+
+/* Every triangle of a sheet must have one cell on each side. */
+static vg_status accept_sheets(struct vg_run *r, const struct vg_mesh *surface,
+                               const struct put *put, struct vg_error *err)
+{
+  const struct vg_mesh *m = r->slices.boundary;
+  struct vg_mesh s = VG_MESH_INIT;
+  vg_status st;
+
+  if (!put->sides) return VG_OK;
+  r->sheets = vg_calloc(m->n_sheet, sizeof *r->sheets);
+  st = r->sheets ? vg_mesh_copy(&s, surface, err)
+                 : vg_fail_memory(err, "the sheets");
+  if (st >= 0) st = vg_mesh_part_sheets(&s, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(vg_sheet_sides_sum(r->comm, put->sides, r->sheets, err));
+  for (size_t i = 0; i < m->n_sheet; i++)
+    r->sheets[i].area = vg_mesh_sheet_area(&s, i);
+  for (size_t i = 0; i < m->n_sheet && st >= 0; i++)
+    if (r->sheets[i].n_bad)
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "%llu triangles of sheet %d%s%s are not faces between two "
+                   "cells, and the mesh was not written; please report this "
+                   "with the project files",
+                   (unsigned long long)r->sheets[i].n_bad, (int)m->sheet[i].id,
+                   *m->sheet[i].name ? " " : "", m->sheet[i].name);
+done:
+  vg_mesh_release(&s);
+  return st;
 }
 
 /* Edges are compared with the sizing field only outside the layers, where sizes
@@ -423,8 +456,9 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_sizing *sizing, struct vg_display *show,
                        struct vg_error *err)
 {
-  size_t front_faces = layers ? layers->front.n_face : 0;
-  struct put put = { r, show };
+  const size_t n_sheet = r->slices.boundary->n_sheet_tri;
+  size_t front_faces = layers ? layers->front.n_face - 2 * n_sheet : 0;
+  struct put put = { .run = r, .show = show };
   struct vg_flat *flat = NULL;
   double t = vg_display_now();
   vg_status st;
@@ -435,6 +469,8 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(prepare_flat(r, &p->boundary.surface, &flat, err));
   r->memory_of.numbers = vg_flat_bytes(flat);
   if (r->layers) r->memory_of.numbers += vg_layer_slices_bytes(r->layers);
+  st = vg_sheet_sides_new(r->slices.boundary, &put.sides, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, flat, vg_wants_median_dual(&p->asked),
@@ -443,6 +479,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
   if (st >= 0) st = accept(r, err);
+  if (st >= 0) st = accept_sheets(r, &p->boundary.surface, &put, err);
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
   st = vg_comm_agree(r->comm, st, err);
@@ -455,9 +492,23 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
 done:
   vg_run_stage_ends(r, VG_STAGE_CHECK);
   vg_flat_free(flat);
+  vg_sheet_sides_free(put.sides);
   if (r->outputs)
     r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
   r->time_judge += vg_display_now() - t - r->time_put - r->pictures.time;
+  return st;
+}
+
+/* The boundary of the mesh without sheets, which the field has as patches. */
+static vg_status part_sheets(struct vg_run *r, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!vg_mesh_has_sheets(r->slices.boundary)) return VG_OK;
+  VG_TRY(vg_mesh_copy(&r->parted_boundary, r->slices.boundary, err));
+  VG_TRY(vg_mesh_part_sheets(&r->parted_boundary, err));
+  r->slices.boundary = &r->parted_boundary;
+done:
   return st;
 }
 
@@ -482,6 +533,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
   VG_TRY(stop_here(r, show, err));
   r->slices = *vg_partition_slices(r->field);
+  VG_TRY(vg_comm_agree(r->comm, part_sheets(r, err), err));
   st = judge(r, p, NULL, sizing, show, err);
 done:
   vg_sizing_free(sizing);
@@ -653,6 +705,8 @@ void vg_run_release(struct vg_run *r, int success)
   vg_solver_slices_close(r->parts);
   vg_run_pictures_release(&r->pictures);
   vg_layer_slices_close(r->layers);
+  vg_mesh_release(&r->parted_boundary);
+  free(r->sheets);
   vg_partition_free(r->field);
   vg_effects_release(&r->effects);
   vg_spans_release(&r->spans);

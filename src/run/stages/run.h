@@ -8,6 +8,7 @@
 
 #include "base/comm.h"
 #include "core/judge/judge_slices.h"
+#include "core/judge/sheet_sides.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
 #include "partition/model/memory_stages.h"
@@ -73,6 +74,9 @@ struct vg_run {
   struct vg_store_report stored;
   struct vg_layer_slices *layers; /* NULL without layers. */
   struct vg_slices slices;        /* The mesh. */
+  struct vg_mesh parted_boundary; /* Its boundary and its sheets, if it has
+                                     sheets and no layers. */
+  struct vg_sheet_report *sheets; /* [n_sheet] findings about sheets. */
   struct vg_slices parted;        /* With solver partitions, if requested. */
   struct vg_solver_slices *parts;
   struct vg_solver_report solver;

@@ -371,6 +371,9 @@ static void grows_layers(void)
   CHECK(!vanguard_wall(job, 1, &w) && w.patch == SIZE_MAX);
   CHECK(vanguard_wall(job, 2, &w) == VANGUARD_ERR_USAGE);
   CHECK(a.n.n_quad && vanguard_quads(job) && vanguard_quad_patches(job));
+  CHECK(!a.n.n_sheet && !a.n.n_sheet_tri && !vanguard_sheet_triangles(job) &&
+        !vanguard_sheet_numbers(job));
+  CHECK(vanguard_sheet(job, 0, &p) == VANGUARD_ERR_USAGE);
   drop(&a);
   vanguard_free(job);
 }

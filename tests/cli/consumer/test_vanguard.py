@@ -214,6 +214,27 @@ class Grid:
         assert at == len(cells)
 
 
+def test_sheets():
+    """Two triangles in a cube are faces between two cells."""
+    points, triangles, patches = (np.array(a) for a in cube(6))
+    n, half = len(points), points.max() / 2
+    plate = half * np.array([[.6, .6, 1], [1.4, .6, 1], [1.4, 1.4, 1],
+                             [.6, 1.4, 1]])
+    job = vanguard.Job()
+    job.surface(np.concatenate([points, plate]),
+                np.concatenate([triangles, [[n, n + 1, n + 2],
+                                            [n, n + 2, n + 3]]]),
+                np.concatenate([patches, [20, 20]]))
+    job.set(sheets="20", flow="internal", layers=False)
+    mesh = job.mesh()
+    assert [s["id"] for s in mesh.sheets] == [20]
+    assert mesh.sheet_triangles.shape == (2, 3)
+    assert not mesh.sheet_numbers.any()
+    assert 20 not in [p["id"] for p in mesh.patches]
+    for face in mesh.sheet_triangles:
+        assert np.isin(mesh.tetrahedra, face).sum(axis=1).tolist().count(3) == 2
+
+
 def test_pyvista_arrays():
     """The arrays for pyvista, whether or not it is installed."""
     mesh = layered(*cube(6))

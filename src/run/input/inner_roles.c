@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Which patches are inner surfaces: by the lists `baffles` and `sheets`, and by
+ * the column `role` of the table `patches`. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "run/input/shape_parts.h"
+#include "run/settings/patch_names.h"
+
+int vg_boundary_wants_inner(const struct vg_boundary *b)
+{
+  const struct vg_settings *s = &b->read->settings;
+  int wants = *s->baffles || *s->sheets;
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    wants |= s->patch[i].role > VG_PATCH_WALL;
+  return wants;
+}
+
+const char *vg_inner_source(const struct vg_settings *s, char *text,
+                            size_t size)
+{
+  const char *baffles = s->baffles, *sheets = s->sheets;
+  int has_role = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    has_role |= s->patch[i].role > VG_PATCH_WALL;
+  snprintf(text, size, "%s%.60s%s%s%.60s%s%s", *baffles ? "baffles " : "",
+           baffles, *baffles && *sheets ? ", " : "", *sheets ? "sheets " : "",
+           sheets, has_role && (*baffles || *sheets) ? ", " : "",
+           has_role ? "the table patches" : "");
+  return text;
+}
+
+static const char *const role_name[] = { "auto", "wall", "baffle", "sheet" };
+
+/* Gives the marked patches a role. from: [n_patch] setting that gave a patch
+ * its role, or NULL */
+static vg_status give(const struct vg_mesh *m, const uint8_t *on, int role,
+                      const char *setting, uint8_t *of, const char **from,
+                      struct vg_error *err)
+{
+  for (size_t i = 0; i < m->n_patch; i++) {
+    const struct vg_patch *p = &m->patch[i];
+
+    if (!on[i]) continue;
+    if (from[i] && of[i] != role)
+      return vg_fail(err, VG_ERR_INPUT,
+                     "patch %d%s%s is a %s by %s, and a %s by %s; remove it "
+                     "from one of them",
+                     (int)p->id, *p->name ? " " : "", p->name, role_name[of[i]],
+                     from[i], role_name[role], setting);
+    of[i] = (uint8_t)role;
+    from[i] = setting;
+  }
+  return VG_OK;
+}
+
+static vg_status give_list(const struct vg_mesh *m, const char *setting,
+                           const char *list, int role, uint8_t *on, uint8_t *of,
+                           const char **from, struct vg_error *err)
+{
+  vg_status st;
+
+  memset(on, 0, m->n_patch);
+  st = vg_patch_list_mark(setting, list, m, m->n_patch, on, err);
+  return st < 0 ? st : give(m, on, role, setting, of, from, err);
+}
+
+vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
+                         uint8_t *role, struct vg_error *err)
+{
+  uint8_t *on = vg_alloc(m->n_patch, 1);
+  const char **from = vg_calloc(m->n_patch, sizeof *from);
+  vg_status st = on && from ? VG_OK : vg_fail_memory(err, "the patches");
+
+  assert(role || !m->n_patch);
+  VG_TRY(st);
+  memset(role, VG_PATCH_AUTO, m->n_patch);
+  VG_TRY(
+    give_list(m, "baffles", s->baffles, VG_PATCH_BAFFLE, on, role, from, err));
+  VG_TRY(
+    give_list(m, "sheets", s->sheets, VG_PATCH_SHEET, on, role, from, err));
+  for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
+    const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
+
+    if (s->patch[i].role == VG_PATCH_AUTO || at == SIZE_MAX) continue;
+    memset(on, 0, m->n_patch);
+    on[at] = 1;
+    st = give(m, on, s->patch[i].role, "the table patches", role, from, err);
+  }
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (role[i] == VG_PATCH_WALL) role[i] = VG_PATCH_AUTO;
+done:
+  free(on);
+  free(from);
+  return st;
+}

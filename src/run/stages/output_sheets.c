@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Sheets in the files of a mesh: STEM.sheets for formats without faces between
+ * cells. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/mesh/foam.h"
+#include "io/mesh/format.h"
+#include "io/mesh/ugrid.h"
+#include "io/stream/sheet_file.h"
+#include "run/stages/output.h"
+
+/* Does STEM.sheets belong to a file in this form? Its points must have the
+ * numbers of the mesh, which those of .cogsg and .pvtu do not have. */
+static int takes_sheets(const char *form)
+{
+  struct vg_ugrid_kind kind;
+
+  return vg_ugrid_kind(form, &kind) || !strcmp(form, "su2") ||
+         !strcmp(form, "vtu");
+}
+
+int vg_outputs_need_sheets(const struct vg_outputs *o)
+{
+  int needs = 0;
+
+  for (size_t i = 0; i < o->n_item; i++) needs |= takes_sheets(o->item[i]);
+  return needs;
+}
+
+vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
+                                  const struct vg_settings *s,
+                                  struct vg_error *err)
+{
+  struct vg_foam_options options;
+  int wants = *s->sheets != 0, holds = vg_outputs_need_sheets(o);
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    wants |= s->patch[i].role == VG_PATCH_SHEET;
+  for (size_t i = 0; i < o->n_item; i++)
+    holds |= vg_foam_word(o->item[i], &options) ||
+             vg_format_holds_sheets(o->item[i]);
+  if (!wants || holds || !o->n_item) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "write: none of these formats holds sheets; add b8.ugrid, "
+                 "cgns, msh, meshb, fluent.msh or foam");
+}
+
+vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
+                            uint64_t n_point, uint64_t n_cell,
+                            struct vg_error *err)
+{
+  int has_ugrid = 0;
+  char *path;
+  vg_status st;
+
+  assert(o->temp_dir && !o->is_guest);
+  if (!m->n_sheet_tri) {
+    path = vg_outputs_final(o, VG_SHEET_SUFFIX);
+    if (!path) return vg_fail_memory(err, "the output paths");
+    for (size_t i = 0; i < o->n_file; i++)
+      has_ugrid |= strstr(o->file[i].suffix, "ugrid") != NULL;
+    o->drops_sheets = has_ugrid && vg_sheet_file_is_own(path);
+    free(path);
+    return VG_OK;
+  }
+  path = vg_outputs_temp_path(o, VG_SHEET_SUFFIX);
+  st = path ? vg_outputs_add(o, VG_SHEET_SUFFIX, err)
+            : vg_fail_memory(err, "the output paths");
+  if (st >= 0) st = vg_sheet_file_write(path, m, n_point, n_cell, err);
+  free(path);
+  return st;
+}

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Sheets: patches that become named faces between cells.
+needs tetgen
+
+# shellcheck source=tests/cli/duct.bash
+. "$here/duct.bash"
+
+# valid NAME OPTION...: meshes NAME.stl with the options.
+valid() {
+  local name=$1
+  shift
+  vanguard mesh "$name.stl" --flow internal --quiet --write b8.ugrid \
+    --out "o_$name" --hmax 0.12 "$@"
+  exits 0
+  vanguard check "o_$name/$name.b8.ugrid"
+  exits 0
+  says out "valid"
+}
+
+# A disk in the box, a plane across it, and sheets that cross and end on a wall.
+duct disk "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5"
+duct across "mid 8 8  0.5 0 0  0 1 0  0 0 1"
+duct both "fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5" \
+  "plate 2 4  0.5 0.25 0.25  0.25 0 0  0 0.5 0"
+valid disk --sheets disk
+says out "7            32            32            32       0.25  disk"
+says out "connected regions: 1"
+lacks out "coincident"
+valid across --sheets 7
+says out "7           128           128           128          1  mid"
+says out "connected regions: 1"
+valid both --sheets fin,plate
+says out "8            16            16            16      0.125  plate"
+
+# Behind a baffle, and as the column role says.
+valid both --baffles fin --sheets plate
+says out "fin_back"
+says out "8            16            16            16      0.125  plate"
+cp both.stl roles.stl
+printf 'roles\n\npatches\nid role\nfin baffle\nplate sheet\n' >roles.deck
+valid roles
+same o_both/both.b8.ugrid o_roles/roles.b8.ugrid
+same o_both/both.sheets o_roles/roles.sheets
+
+# The deck with all settings makes the same mesh.
+vanguard mesh roles.stl --deck o_roles/roles.resolved.deck --quiet --out again \
+  --flow internal --write b8.ugrid
+exits 0
+same o_roles/roles.b8.ugrid again/roles.b8.ugrid
+
+# Layers on walls that no sheet touches.
+valid disk --sheets disk --walls 'w*' --first 0.004 --cells mixed
+says out "7            32            32            32       0.25  disk"
+
+# The example: a disk in front of a sphere.
+vanguard demo disk --cells 20000 --out demo
+exits 0
+vanguard mesh -p demo/disk --quiet --write b8.ugrid
+exits 0
+vanguard check demo/disk.b8.ugrid
+exits 0
+says out "  disk"
+says out "connected regions: 1"
+
+# Same bytes with threads and in any decomposition.
+ways="advancing octree"
+vanguard --version --verbose
+grep -q "METIS" out && ways="$ways discrete"
+for way in $ways; do
+  for threads in 1 3; do
+    vanguard mesh both.stl --flow internal --quiet --baffles fin \
+      --sheets plate --decompose $way --leaf-cells 1500 --hmax 0.08 \
+      --threads $threads --write b8.ugrid --out $way$threads
+    exits 0
+  done
+  same ${way}1/both.b8.ugrid ${way}3/both.b8.ugrid
+  same ${way}1/both.sheets ${way}3/both.sheets
+  vanguard check ${way}1/both.b8.ugrid
+  exits 0
+  says out "8            16            16            16      0.125  plate"
+done
+
+# --- formats -----------------------------------------------------------------
+
+vanguard mesh both.stl --flow internal --quiet --sheets fin,plate --hmax 0.12 \
+  --write b8.ugrid,msh,meshb,fluent.msh,vtu,foam --out all
+exits 0
+vanguard check --json all/both.b8.ugrid
+exits 0
+says out '"cells_behind": 32'
+for form in msh meshb; do
+  vanguard check all/both.$form
+  exits 0
+  says out "7            32            32            32       0.25  "
+done
+
+# From format to format, with their names.
+vanguard convert all/both.msh back.lb8.ugrid
+exits 0
+says out "48 triangles of sheets are in back.sheets"
+same back.sheets all/both.sheets
+vanguard convert back.lb8.ugrid once.msh
+exits 0
+same once.msh all/both.msh
+vanguard convert all/both.b8.ugrid o.su2
+exits 0
+same o.sheets all/both.sheets
+vanguard convert all/both.b8.ugrid o.stl
+exits 0
+says out "48 triangles of sheets are omitted"
+
+# A file of an earlier mesh is removed, one of another mesh refused.
+exists all/both.sheets
+vanguard mesh both.stl --flow internal --quiet --baffles fin,plate --hmax 0.12 \
+  --write b8.ugrid --out all
+exits 0
+absent all/both.sheets
+cp back.sheets all
+mv all/back.sheets all/both.sheets
+vanguard check all/both.b8.ugrid
+exits 1
+says err "these sheets belong to a mesh of"
+
+# Zones of Fluent: 48 faces between cells in zones of their own.
+grep -A1 '^(45 (.* interior ' all/both.fluent.msh >out
+says out "interior fin)"
+says out "interior plate)"
+
+# Sections of CGNS.
+vanguard convert once.msh c.cgns
+if [ "$status" = 0 ]; then
+  vanguard check c.cgns
+  exits 0
+  says out "  fin"
+  if command -v cgnscheck >/dev/null; then
+    cgnscheck c.cgns >out 2>&1
+    says out 'checking subregion "plate+faces"'
+    lacks out "ERROR"
+  else echo "cgnscheck is not installed: its check is omitted"; fi
+else says err "HDF5"; fi
+
+# gmsh finds no element twice and no point without elements.
+if command -v gmsh >/dev/null; then
+  gmsh -check once.msh >out 2>&1
+  lacks out "Warning"
+  lacks out "Error"
+else echo "gmsh is not installed: its check is omitted"; fi
+
+# OpenFOAM reads the zones, and makes baffles of one.
+if command -v createBaffles >/dev/null; then
+  set +u
+  # shellcheck disable=SC1090
+  [ -n "${WM_PROJECT_DIR:-}" ] ||
+    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
+  set -u
+  cat >all/both.openfoam/system/createBafflesDict <<'END'
+FoamFile { version 2.0; format ascii; class dictionary; object createBafflesDict; }
+internalFacesOnly true;
+baffles { plate { type faceZone; zoneName plate; patches {
+  master { name plate_a; type wall; } slave { name plate_b; type wall; } } } }
+END
+  (cd all/both.openfoam && checkMesh) >out 2>err
+  says out "Mesh OK."
+  grep -qE "fin +32 +25 +ok" out || fail "the zone fin has no 32 faces"
+  (cd all/both.openfoam && createBaffles -overwrite) >out 2>err
+  says out "Converted 16 faces into boundary faces in patches 2(plate_a plate_b)"
+else echo "OpenFOAM is not installed: its programs are omitted"; fi
+
+# --- refused -----------------------------------------------------------------
+
+vanguard mesh both.stl --flow internal --sheets fan
+exits 1
+says err "fan"
+vanguard mesh both.stl --flow internal --baffles fin --sheets 7
+exits 1
+says err "patch 7 fin is a baffle by baffles, and a sheet by sheets"
+vanguard mesh roles.stl --flow internal --sheets fin
+exits 1
+says err "patch 7 fin is a sheet by sheets, and a baffle by the table patches"
+sed -i 's/plate sheet/plate wall/' roles.deck
+vanguard mesh roles.stl --flow internal --sheets plate
+exits 1
+says err "patch 8 plate is a sheet by sheets, and a wall by the table patches"
+vanguard mesh disk.stl --flow internal --sheets '1-7'
+exits 1
+says err "all triangles are in inner surfaces (sheets 1-7)"
+vanguard mesh disk.stl --flow internal --sheets disk --walls 'w*,disk' \
+  --first 0.004
+exits 1
+says err "patch 7 disk is an inner surface, and layers are requested on it"
+duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
+vanguard mesh cut.stl --flow internal --sheets cut
+exits 1
+says out "self-intersection: patch 2"
+vanguard mesh disk.stl --flow internal --sheets disk \
+  --write cogsg,stl --out none
+exits 1
+says err "write: none of these formats holds sheets"
+vanguard convert once.msh lost.cogsg
+exits 0
+says out "48 triangles of sheets are lost"
+absent lost.sheets
+vanguard mesh disk.stl --flow internal --sheets disk --weld 1e-6
+exits 1
+says err "inner surfaces (sheets disk) cannot be combined with weld"
