@@ -6,8 +6,8 @@
  * fork copies the page tables of the caller. In a process of many gigabytes
  * this takes seconds, under MPI it is discouraged, and if other threads are
  * running the child may inherit locks that are never released. The program
- * therefore forks a small, single-threaded server process at its start, and that
- * server forks again for each call of vg_child_open. Without the server,
+ * therefore forks a small, single-threaded server process at its start, and
+ * that server forks again for each call of vg_child_open. Without the server,
  * vg_child_open forks the calling process.
  *
  * There is one server per process, just as there is one standard output. It is

@@ -91,7 +91,8 @@ static void keep_memory(void)
 /* Every command may need a child: TetGen, METIS, CAD and CGNS files have their
  * own. Their server starts before threads and MPI, while this process is small:
  * a child forked next to a running thread may wait for a lock that this thread
- * held. Without the server, children only cost more, so that is not an error. */
+ * held. Without the server, children only cost more, so that is not an error.
+ */
 static int run(const struct command *c, int argc, char **argv)
 {
   int status;

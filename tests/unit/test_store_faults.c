@@ -54,7 +54,7 @@ enum call {
 static struct {
   enum call what;
   long n[N_CALL]; /* calls since the start */
-  long at;        /* the one that fails, from 1; 0: none */
+  long at;        /* the call that fails, from 1; 0: no call */
   int error;      /* errno; 0: half of the bytes, or the end */
 } faults;
 
@@ -191,7 +191,7 @@ static int remove_one(const char *path, const struct stat *s, int flag,
   return remove(path);
 }
 
-/* The digest of a file is that of the first call, or there is none. */
+/* The digest of a file is that of the first call, or the call fails. */
 static void digest_of_a_file(void)
 {
   static struct vg_digest first;
