@@ -5,12 +5,14 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include <dlfcn.h>
 #include <signal.h>
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "common/endless.h"
 #include "tetgen/tetgen_input.h"
 
 namespace
@@ -22,12 +24,10 @@ namespace
  * any machine. */
 const uint64_t call_limit = 20000000, call_limit_per_triangle = 50000; /* K4 */
 
-/* TetGen may also loop forever without calling a predicate. A job is therefore
- * aborted, too, if it computes for this many seconds, plus this many per
- * triangle, without a call. Time in the kernel, which may be short of memory,
- * does not count. Otherwise there are millions of calls per
- * second, so the clock only stops jobs that would never end. */
-const double silence = 2, silence_each = 1e-4;
+/* TetGen may also loop forever without calling a predicate. Without calls, its
+ * state is compared with earlier ones at these intervals of computing: only a
+ * loop that is proven to be endless is aborted (common/endless.h). */
+const suseconds_t look_us = 4000;
 
 /* Calls left to the current job, and their number at the last check. */
 volatile uint64_t calls_left = UINT64_MAX, calls_seen;
@@ -43,10 +43,14 @@ void count_call()
   if (!(calls_left = calls_left - 1)) give_up();
 }
 
-void look(int)
+void look(int, siginfo_t *, void *context)
 {
-  if (calls_left == calls_seen) give_up();
+  if (calls_left == calls_seen) {
+    if (vg_endless_look(context)) give_up();
+    return;
+  }
   calls_seen = calls_left;
+  vg_endless_start();
 }
 
 #ifndef VG_TETGEN_STATIC
@@ -112,13 +116,16 @@ bool run(uint32_t first, const vg_serve_surface &s)
 
 void be_patient(size_t n_tri)
 {
+  struct sigaction a = {};
   itimerval time = {};
 
   calls_left = call_limit + call_limit_per_triangle * n_tri;
   calls_seen = 0;
-  signal(SIGVTALRM, look);
-  time.it_value.tv_sec = static_cast<time_t>(
-    silence + silence_each * static_cast<double>(n_tri));
+  if (!vg_endless_start()) throw std::bad_alloc();
+  a.sa_sigaction = look;
+  a.sa_flags = SA_SIGINFO | SA_RESTART;
+  sigaction(SIGVTALRM, &a, nullptr);
+  time.it_value.tv_usec = look_us;
   time.it_interval = time.it_value;
   setitimer(ITIMER_VIRTUAL, &time, nullptr);
 }

@@ -267,6 +267,22 @@ static void make_tiny(const char *file)
   save_shape(file, &s);
 }
 
+static void make_small(const char *file)
+{
+  struct shape s = { 0 };
+
+  add_box(&s, 0, 1e-30, 0, 0);
+  save_shape(file, &s);
+}
+
+static void make_far(const char *file)
+{
+  struct shape s = { 0 };
+
+  add_box(&s, -1e30, 1e30, 0, 0);
+  save_shape(file, &s);
+}
+
 /* --- surfaces that the check repairs ------------------------------------- */
 
 /* The outer boundary points inward, as it should; the body in it wrongly points
@@ -360,8 +376,10 @@ const struct hostile hostile_shapes[] = {
     .phrase = "open edge",
     .make = make_repeated_node },
   { .file = "one_sided.tri", .phrase = "orientation", .make = make_one_sided },
-  { .file = "far_away.tri", .phrase = "beyond 1e+60", .make = make_far_away },
-  { .file = "tiny.tri", .phrase = "degenerate", .make = make_tiny },
+  { .file = "far_away.tri", .phrase = "beyond 1e+15", .make = make_far_away },
+  { .file = "far.tri", .phrase = "beyond 1e+15", .make = make_far },
+  { .file = "tiny.tri", .phrase = "smaller than 1e-45", .make = make_tiny },
+  { .file = "small.tri", .phrase = "box of side 1e-30", .make = make_small },
   { .file = "inside_out.tri",
     .phrase = "reversed",
     .verdict = MENDED,

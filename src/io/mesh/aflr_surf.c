@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surface files of AFLR3; see io/mesh/aflr.h and formats.md 2.5. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,9 @@
 
 /* All flags of AFLR3 are well within this range. */
 enum { FLAG_LOW = -8, FLAG_HIGH = 15, N_FLAG = FLAG_HIGH - FLAG_LOW + 1 };
+
+/* Value of a patch before any of its points. */
+static const double unset = INFINITY;
 
 struct reading {
   struct vg_input *in;
@@ -214,7 +218,7 @@ static vg_status set_patches(struct reading *r, struct vg_error *err)
 static void meet(double *common, double v)
 {
   v = v > 0 ? v : 0;
-  if (*common == VG_COORDINATE_MAX) *common = v;
+  if (*common == unset) *common = v;
   else if (*common != v) *common = -1;
 }
 
@@ -224,7 +228,7 @@ static void common_values(struct reading *r)
   struct vg_aflr *a = &r->a;
 
   for (size_t i = 0; i < a->n; i++)
-    a->patch[i].spacing = a->patch[i].thickness = VG_COORDINATE_MAX;
+    a->patch[i].spacing = a->patch[i].thickness = unset;
   for (size_t i = 0; i < m->n_tri + m->n_quad; i++) {
     int is_tri = i < m->n_tri;
     const uint32_t *node = is_tri ? m->tri[i] : m->quad[i - m->n_tri];
@@ -239,8 +243,8 @@ static void common_values(struct reading *r)
   for (size_t i = 0; i < a->n; i++) {
     struct vg_aflr_patch *p = a->patch + i;
 
-    if (p->spacing < 0 || p->spacing == VG_COORDINATE_MAX) p->spacing = 0;
-    if (p->thickness < 0 || p->thickness == VG_COORDINATE_MAX) p->thickness = 0;
+    if (p->spacing < 0 || p->spacing == unset) p->spacing = 0;
+    if (p->thickness < 0 || p->thickness == unset) p->thickness = 0;
   }
 }
 

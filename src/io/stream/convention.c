@@ -3,7 +3,7 @@
 #include "io/stream/convention.h"
 
 #include <assert.h>
-#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,27 +17,42 @@
 #include "core/mesh/cell_faces.h"
 #include "core/mesh/sheets.h"
 
+static int is_in_range(double x)
+{
+  double size = fabs(x);
+
+  return size <= VG_COORDINATE_MAX && (size >= VG_COORDINATE_MIN || size == 0);
+}
+
+static vg_status out_of_range(const char *path, size_t i, int k,
+                              const double p[3], struct vg_error *err)
+{
+  const double x = p[k];
+
+  if (!isfinite(x))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: coordinate %c of point %zu is not a finite "
+                   "number (%g); correct the file or check its byte order",
+                   path, "xyz"[k], i + 1, x);
+  if (fabs(x) > VG_COORDINATE_MAX)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: coordinate %c of point %zu (%g %g %g) is beyond %g; "
+                   "check the byte order or use another unit of length",
+                   path, "xyz"[k], i + 1, p[0], p[1], p[2], VG_COORDINATE_MAX);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: coordinate %c of point %zu (%g %g %g) is not 0, but "
+                 "smaller than %g, and volumes would not be exact; check the "
+                 "byte order, replace it by 0 or use another unit of length",
+                 path, "xyz"[k], i + 1, p[0], p[1], p[2], VG_COORDINATE_MIN);
+}
+
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)
 {
   assert(path && (p || !n));
   for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) {
-      double x = p[i][k];
-
-      if (x >= -VG_COORDINATE_MAX && x <= VG_COORDINATE_MAX) continue;
-      if (!(x >= -DBL_MAX && x <= DBL_MAX))
-        return vg_fail(err, VG_ERR_INPUT,
-                       "%s: coordinate %c of point %zu is not a finite "
-                       "number (%g); correct the file or check its byte "
-                       "order",
-                       path, "xyz"[k], i + 1, x);
-      return vg_fail(err, VG_ERR_INPUT,
-                     "%s: coordinate %c of point %zu is %g; volumes cannot "
-                     "be computed beyond %g; check the byte order or use "
-                     "another unit of length",
-                     path, "xyz"[k], i + 1, x, VG_COORDINATE_MAX);
-    }
+    for (int k = 0; k < 3; k++)
+      if (!is_in_range(p[i][k])) return out_of_range(path, i, k, p[i], err);
   return VG_OK;
 }
 

@@ -349,6 +349,21 @@ static vg_status check_farfield(const struct vg_boundary *b,
                  size, edge, n);
 }
 
+static vg_status check_reach(const struct vg_boundary *b, struct vg_error *err)
+{
+  double lo[3], hi[3], most = 0;
+
+  vg_mesh_bounds(&b->surface, lo, hi);
+  for (int k = 0; k < 3; k++) most = fmax(most, fmax(-lo[k], hi[k]));
+  if (most <= VG_COORDINATE_MAX) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: the farfield reaches from (%g, %g, %g) to (%g, %g, %g), "
+                 "beyond %g; make it smaller (farfield.size, "
+                 "farfield.lengths) or use another unit of length",
+                 b->read->files.stem, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2],
+                 VG_COORDINATE_MAX);
+}
+
 /* Farfield options, with open settings filled in from the decided flow. */
 static struct vg_farfield decided_farfield(const struct vg_boundary *b)
 {
@@ -471,6 +486,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
+  VG_TRY(check_reach(b, err));
   VG_TRY(stretch_added(b, n_own, sizing, far.spacing, show, err));
 done:
   vg_sizing_free(sizing);

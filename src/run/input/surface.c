@@ -15,6 +15,9 @@
 #include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
 
+/* Smallest side of the box of a surface: seven orders of magnitude remain for
+ * edges whose squares are normal numbers in single precision. */
+#define EXTENT_MIN 1e-10
 #define SHOWN_PATCHES 20 /* Most patch numbers in a note. */
 /* S62: share of the length below which gaps between rims are due to the
  * rounding of coordinates. */
@@ -521,6 +524,25 @@ done:
   return st;
 }
 
+/* The unit of length may have changed since the file was read. */
+static vg_status check_range(const struct vg_boundary *b, struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface;
+  const char *name = b->read->files.stem;
+  double lo[3], hi[3], side = 0;
+
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++) side = fmax(side, hi[k] - lo[k]);
+  if (side == 0 || side >= EXTENT_MIN)
+    return vg_check_points(name, m->n_point, (const double(*)[3])m->point, err);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: all points are within a box of side %g, from "
+                 "(%g, %g, %g) to (%g, %g, %g); a surface must be at least %g "
+                 "long; check the byte order or use a smaller unit of length",
+                 name, side, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2],
+                 EXTENT_MIN);
+}
+
 vg_status vg_boundary_shape(struct vg_read *read,
                             const struct vg_shape_options *o,
                             struct vg_display *show, struct vg_boundary *b,
@@ -536,6 +558,7 @@ vg_status vg_boundary_shape(struct vg_read *read,
   b->model = read->model;
   read->model = (struct vg_cad_model)VG_CAD_MODEL_INIT;
   vg_mesh_keep_boundary(&b->surface);
+  VG_TRY(check_range(b, err));
   b->require_bc = has_conditions(&b->surface);
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   if (vg_boundary_wants_inner(b)) {

@@ -21,7 +21,7 @@
 #include "run/settings/surface_table.h"
 
 #define MACH_MAX 100   /* beyond all flows of continua */
-#define HUGE_SIZE 1e60 /* the geometric predicates are safe up to this */
+#define HUGE_SIZE 1e60 /* its cube is finite */
 
 static const char *const domain_words[] = { "auto", "none", "sphere",
                                             "box",  "mach", NULL };
