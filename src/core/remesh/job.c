@@ -19,7 +19,7 @@
 #include "core/surface/envelope.h"
 
 #define TOLERANCE 1e-4 /* S20: of the body's length */
-#define FINE 0.01    /* S86: of the width of a patch: largest tolerance there */
+#define FINE 0.0075    /* S86: of the width of a patch: largest tolerance */
 #define NOISE 3.0    /* S43: of the accuracy: least size from the shape alone */
 #define H_MAX 0.02   /* of the length of the body */
 #define H_MIN 2e-4   /* of the length: twice the tolerance */
@@ -311,8 +311,9 @@ void vg_job_release_reference(struct vg_remesh_job *j)
   j->given = j->whole;
 }
 
-/* Without limit, the area of a patch changes by the tolerance times the length
- * of its border. */
+/* An arc of sagitta s and its chord enclose two thirds of s times the chord, so
+ * that the area of a patch of width w, twice its area over the length of its
+ * border, changes by up to 4 s / 3 w. */
 static vg_status limit_tolerance(struct vg_remesh_job *j, struct vg_error *err)
 {
   const double scale = j->o->scale * fmax(j->o->scale, 1);

@@ -33,8 +33,8 @@ enum vg_remesh_course {
 struct vg_remesh_options {
   double tolerance;     /* Largest distance between the surfaces. 0: 1e-4 of the
                            length of the body. It is limited to 0.05 of the
-                           local size, and to 0.01 of the width of a patch that
-                           keeps its borders. */
+                           local size, and to 0.0075 of the width of a patch
+                           that keeps its borders. */
   double accuracy;      /* Distance within which the input approximates the true
                            shape. The default tolerance is not smaller, and the
                            shape requests no sizes close to it. */

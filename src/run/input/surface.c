@@ -507,6 +507,8 @@ static vg_status try_shapes(struct vg_boundary *b,
     next = vg_boundary_tessellate(b, i, g.patch, g.n_patch, g.n_note, show,
                                   &again);
     if (next == VG_BLOCKED) break;
+    /* A tessellation that does not cover the faces is no surface to try. */
+    if (next == VG_ERR_GEOMETRY) continue;
     if (next < 0) {
       st = vg_fail(err, next, "%s", again.text);
       goto done;
