@@ -125,6 +125,21 @@ static vg_status refuse_added_walls(const struct vg_boundary *b,
   return VG_OK;
 }
 
+static vg_status refuse_sheet(const struct vg_mesh *m,
+                              const enum vg_wall_reason *reason,
+                              struct vg_error *err)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].is_sheet && reason[i] != VG_WALL_NOT)
+      return vg_fail(
+        err, VG_ERR_INPUT,
+        "layers are requested on patch %d%s%s, but it is a sheet, "
+        "through which the mesh continues; remove it from the "
+        "list walls and from the table layers, or make it a baffle",
+        (int)m->patch[i].id, *m->patch[i].name ? " " : "", m->patch[i].name);
+  return VG_OK;
+}
+
 /* A patch without faces cannot have layers, even if they are requested. */
 static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
                               const enum vg_wall_reason *reason,
@@ -162,6 +177,7 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
 {
   const struct vg_patch *patch = &b->surface.patch[i];
 
+  if (patch->is_sheet) return VG_WALL_NOT;
   if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
@@ -282,6 +298,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   for (size_t i = 0; i < m->n_patch; i++)
     reason[i] = by_input(b, i, has_faces[i]);
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
+  VG_TRY(refuse_sheet(m, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
   if (!*n_wall && vg_walls_asked(&b->read->settings)) st = no_walls(b, err);

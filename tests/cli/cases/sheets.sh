@@ -187,7 +187,7 @@ says err "all triangles are in inner surfaces (sheets 1-7)"
 vanguard mesh disk.stl --flow internal --sheets disk --walls 'w*,disk' \
   --first 0.004
 exits 1
-says err "patch 7 disk is an inner surface, and layers are requested on it"
+says err "layers are requested on patch 7 disk, but it is a sheet"
 duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
 vanguard mesh cut.stl --flow internal --sheets cut
 exits 1
