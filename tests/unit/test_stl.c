@@ -59,7 +59,7 @@ static void text_round_trip_is_exact(void **state)
   (void)state;
   io_make_t1(&m, 0);
   m.point[0][0] = 1.0 / 3;
-  m.point[1][1] = -1e-300;
+  m.point[1][1] = -1.25e-45;
   m.point[2][2] = 123456789.123456789;
   for (size_t i = 0; i < 4; i++)
     snprintf(m.patch[i].name, VG_NAME_MAX, "side %zu", i);

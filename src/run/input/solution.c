@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/mesh/csv.h"
+#include "io/stream/csv.h"
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu_read.h"

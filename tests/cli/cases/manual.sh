@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Man pages and completions agree with the program.
 share=$(dirname "$program")/../share
-for command in mesh surface check partition convert plan sweep serve deck demo; do
+for command in mesh surface check partition convert metric plan sweep serve deck demo; do
   page=$share/man/man1/vanguard-$command.1
   exists "$page"
   vanguard $command --help
@@ -14,7 +14,7 @@ for command in mesh surface check partition convert plan sweep serve deck demo; 
   done <options
 done
 page=$share/man/man1/vanguard.1
-for command in mesh surface check partition convert plan sweep serve deck demo; do
+for command in mesh surface check partition convert metric plan sweep serve deck demo; do
   says "$page" ".BR vanguard\\-$command (1)$([ $command = demo ] || echo ,)"
 done
 for section in COMMANDS EXAMPLES ENVIRONMENT "SEE ALSO"; do
@@ -39,6 +39,7 @@ complete_words() {
 complete_words vanguard m
 is out <<'END'
 mesh
+metric
 END
 complete_words vanguard mesh --farfield-l
 is out <<'END'
@@ -57,7 +58,7 @@ is out <<'END'
 
 END
 # Every long option of every command is completed, and nothing else.
-for command in mesh surface check partition convert plan sweep serve deck demo; do
+for command in mesh surface check partition convert metric plan sweep serve deck demo; do
   vanguard $command --help
   sed -n 's/^ \{2,6\}\(-[^ ], \)*--\([a-z0-9-]*\).*/--\2/p' out | sort -u >options
   complete_words vanguard $command --
@@ -81,7 +82,7 @@ expect "tets mixed hex" vanguard check --cells ""
 expect "no yes" vanguard surface --repair =
 expect "vtu,su2" vanguard mesh --write vtu,su
 expect "wing-half" vanguard demo wing-h
-expect "mesh" vanguard help m
+expect "mesh metric" vanguard help m
 expect "" vanguard mesh --mapbc = w
 expect "" vanguard mesh --growth = ""
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* io/mesh/csv.h: tables of numbers separated by commas, with a line of names,
+/* io/stream/csv.h: tables of numbers separated by commas, with a line of names,
  * such as SU2's restart_flow.csv: one line for each point of a mesh. */
-#ifndef VG_IO_MESH_CSV_H
-#define VG_IO_MESH_CSV_H
+#ifndef VG_IO_STREAM_CSV_H
+#define VG_IO_STREAM_CSV_H
 
 #include "io/stream/stream.h"
 

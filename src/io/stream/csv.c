@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "io/mesh/csv.h"
+#include "io/stream/csv.h"
 
 #include <assert.h>
 #include <stdio.h>
