@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-# A box with sheets, for the cases of inner surfaces.
+# Boxes with sheets and their meshes, for the cases of inner surfaces.
 
 # duct NAME SHEET...: a closed box from 0 to 1 of 8 x 8 quadrilaterals a side,
 # patches 1 to 6, and sheets "ID N M  ox oy oz  ux uy uz  vx vy vz" of N x M,
@@ -27,4 +27,16 @@ duct() {
           facet(i, j, i + 1, j + 1, i, j + 1)
         }
         print "endsolid " $1 }' >"$name.stl"
+}
+
+# valid NAME OPTION...: meshes NAME.stl with the options.
+valid() {
+  local name=$1
+  shift
+  vanguard mesh "$name.stl" --flow internal --quiet --write b8.ugrid \
+    --out "o_$name" --hmax 0.12 "$@"
+  exits 0
+  vanguard check "o_$name/$name.b8.ugrid"
+  exits 0
+  says out "valid"
 }

@@ -101,64 +101,61 @@ static double *values_of(const struct vg_mesh *m, double f(const double x[3]))
   return v;
 }
 
-/* On a regular mesh the Hessian of a quadratic is exact at all points, on the
- * boundary and in its first ring as well. */
-static void exact_for_quadratics(void **state)
+/* The Hessian of a quadratic, whose values v may be wrong in the layers, is
+ * exact at all points. Releases m and v. */
+static void expect_exact(struct vg_mesh *m, double *v, size_t n_layer,
+                         size_t n_left_out)
 {
-  struct vg_mesh m;
   struct vg_estimate e = VG_ESTIMATE_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  double(*h)[6], *v;
+  double(*h)[6] = calloc(m->n_point, sizeof *h);
 
-  (void)state;
-  make_cube(&m, 0, 0);
-  v = values_of(&m, quadratic);
-  h = calloc(m.n_point, sizeof *h);
-  assert_int_equal(vg_estimate_open(&e, &m, 0, &err), VG_OK);
-  assert_int_equal(e.n_left_out, 0);
+  assert_int_equal(vg_estimate_open(&e, m, n_layer, &err), VG_OK);
+  assert_int_equal(e.n_left_out, n_left_out);
   assert_int_equal(vg_hessian(&e, v, h, &err), VG_OK);
-  for (size_t p = 0; p < m.n_point; p++)
+  for (size_t p = 0; p < m->n_point; p++)
     for (int k = 0; k < 6; k++)
       assert_true(fabs(h[p][k] - hessian_of_quadratic[k]) < 1e-9);
   vg_estimate_release(&e);
   free(h);
   free(v);
-  vg_mesh_release(&m);
+  vg_mesh_release(m);
+}
+
+/* Values of the quadratic above the height z, and wrong ones below. */
+static double *values_above(const struct vg_mesh *m, double z)
+{
+  double *v = values_of(m, quadratic);
+
+  for (size_t p = 0; p < m->n_point; p++)
+    if (m->point[p][2] < z) v[p] = 1e6 * (double)p;
+  return v;
+}
+
+/* On the boundary and in its first ring as well. */
+static void exact_for_quadratics(void **state)
+{
+  struct vg_mesh m;
+
+  (void)state;
+  make_cube(&m, 0, 0);
+  expect_exact(&m, values_of(&m, quadratic), 0, 0);
 }
 
 /* Prisms next to tetrahedra are layers: values there change nothing. */
 static void layers_are_left_out(void **state)
 {
   struct vg_mesh m;
-  struct vg_estimate e = VG_ESTIMATE_INIT;
-  struct vg_error err = VG_ERROR_INIT;
-  double(*h)[6], *v;
 
   (void)state;
   make_cube(&m, 0, 3);
-  v = values_of(&m, quadratic);
-  h = calloc(m.n_point, sizeof *h);
-  for (size_t p = 0; p < m.n_point; p++)
-    if (m.point[p][2] < 2.5 / SIDE) v[p] = 1e6 * (double)p;
-  assert_int_equal(vg_estimate_open(&e, &m, 0, &err), VG_OK);
-  assert_int_equal(e.n_left_out, 3 * 2 * SIDE * SIDE);
-  assert_int_equal(vg_hessian(&e, v, h, &err), VG_OK);
-  for (size_t p = 0; p < m.n_point; p++)
-    for (int k = 0; k < 6; k++)
-      assert_true(fabs(h[p][k] - hessian_of_quadratic[k]) < 1e-9);
-  vg_estimate_release(&e);
-  free(h);
-  free(v);
-  vg_mesh_release(&m);
+  expect_exact(&m, values_above(&m, 2.5 / SIDE), 0, 3 * 2 * SIDE * SIDE);
 }
 
 /* The first tetrahedra, in sheets above z = 0, are layers. */
 static void layer_tetrahedra_are_left_out(void **state)
 {
   struct vg_mesh m;
-  struct vg_estimate e = VG_ESTIMATE_INIT;
-  struct vg_error err = VG_ERROR_INIT;
-  double(*h)[6], *v;
   size_t n_layer = 0;
 
   (void)state;
@@ -174,44 +171,18 @@ static void layer_tetrahedra_are_left_out(void **state)
     memcpy(m.tet[n_layer++], kept, sizeof kept);
   }
   assert_int_equal(n_layer, 6 * 2 * SIDE * SIDE);
-  v = values_of(&m, quadratic);
-  h = calloc(m.n_point, sizeof *h);
-  for (size_t p = 0; p < m.n_point; p++)
-    if (m.point[p][2] < 1.5 / SIDE) v[p] = 1e6 * (double)p;
-  assert_int_equal(vg_estimate_open(&e, &m, n_layer, &err), VG_OK);
-  assert_int_equal(e.n_left_out, n_layer);
-  assert_int_equal(vg_hessian(&e, v, h, &err), VG_OK);
-  for (size_t p = 0; p < m.n_point; p++)
-    for (int k = 0; k < 6; k++)
-      assert_true(fabs(h[p][k] - hessian_of_quadratic[k]) < 1e-9);
-  vg_estimate_release(&e);
-  free(h);
-  free(v);
-  vg_mesh_release(&m);
+  expect_exact(&m, values_above(&m, 1.5 / SIDE), n_layer, n_layer);
 }
 
 /* A mesh of prisms alone has no layers to leave out. */
 static void prisms_alone(void **state)
 {
   struct vg_mesh m;
-  struct vg_estimate e = VG_ESTIMATE_INIT;
-  struct vg_error err = VG_ERROR_INIT;
-  double(*h)[6], *v;
 
   (void)state;
   make_cube(&m, 0, SIDE);
   assert_int_equal(m.n_tet, 0);
-  v = values_of(&m, quadratic);
-  h = calloc(m.n_point, sizeof *h);
-  assert_int_equal(vg_estimate_open(&e, &m, 0, &err), VG_OK);
-  assert_int_equal(vg_hessian(&e, v, h, &err), VG_OK);
-  for (size_t p = 0; p < m.n_point; p++)
-    for (int k = 0; k < 6; k++)
-      assert_true(fabs(h[p][k] - hessian_of_quadratic[k]) < 1e-9);
-  vg_estimate_release(&e);
-  free(h);
-  free(v);
-  vg_mesh_release(&m);
+  expect_exact(&m, values_of(&m, quadratic), 0, 0);
 }
 
 /* A layer at x = 0.5, and one at y = 0.3. */

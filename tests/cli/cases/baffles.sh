@@ -5,18 +5,6 @@ needs tetgen
 # shellcheck source=tests/cli/duct.bash
 . "$here/duct.bash"
 
-# valid NAME OPTION...: meshes NAME.stl with the options.
-valid() {
-  local name=$1
-  shift
-  vanguard mesh "$name.stl" --flow internal --quiet --write b8.ugrid \
-    --out "o_$name" --hmax 0.12 "$@"
-  exits 0
-  vanguard check "o_$name/$name.b8.ugrid"
-  exits 0
-  says out "valid"
-}
-
 # A fin that stands on a wall, a free plate that ends on a line of the fin, and
 # a wall across, each with free edges or without.
 fin="fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5"

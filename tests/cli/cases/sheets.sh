@@ -5,18 +5,6 @@ needs tetgen
 # shellcheck source=tests/cli/duct.bash
 . "$here/duct.bash"
 
-# valid NAME OPTION...: meshes NAME.stl with the options.
-valid() {
-  local name=$1
-  shift
-  vanguard mesh "$name.stl" --flow internal --quiet --write b8.ugrid \
-    --out "o_$name" --hmax 0.12 "$@"
-  exits 0
-  vanguard check "o_$name/$name.b8.ugrid"
-  exits 0
-  says out "valid"
-}
-
 # A disk in the box, a plane across it, and sheets that cross and end on a wall.
 duct disk "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5"
 duct across "mid 8 8  0.5 0 0  0 1 0  0 0 1"
@@ -51,6 +39,12 @@ same o_roles/roles.b8.ugrid again/roles.b8.ugrid
 # Layers on walls that no sheet touches.
 valid disk --sheets disk --walls 'w*' --first 0.004 --cells mixed
 says out "7            32            32            32       0.25  disk"
+
+# Layers on both sides of a baffle that a sheet continues.
+valid both --baffles fin --sheets plate --walls 'w*,fin' --first 0.004 \
+  --cells mixed
+says out "fin_back"
+says out "8            16            16            16      0.125  plate"
 
 # The example: a disk in front of a sphere.
 vanguard demo disk --cells 20000 --out demo
