@@ -178,7 +178,7 @@ static void bad_points_are_named(void **state)
   assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
                                          &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "f: point 3 is not finite"));
+  assert_non_null(strstr(err.text, "f: point 3, ("));
   x[2][0] = 0;
   assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
                                          &err),

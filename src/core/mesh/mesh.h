@@ -24,6 +24,13 @@
  * code, so "not given" has a value of its own. */
 #define VG_BC_NONE INT32_MIN
 
+/* Magnitudes of coordinates that are not 0. Predicates are exact for them
+ * (core/geometry/predicates.h), and squares of lengths between 1e-17 and 1e18
+ * are normal numbers in single precision, in which point placement, load and
+ * clearance compare distances. */
+#define VG_COORDINATE_MIN 1e-45
+#define VG_COORDINATE_MAX 1e15
+
 /* Part of an inner surface, which has fluid on both sides. */
 enum { VG_INNER_NOT, VG_INNER_FRONT, VG_INNER_BACK };
 

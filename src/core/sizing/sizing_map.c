@@ -13,14 +13,23 @@ struct vg_size_samples {
   struct vg_size_map map;
 };
 
+vg_status vg_size_place_check(const char *name, size_t i, const double x[3],
+                              struct vg_error *err)
+{
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(x[k]) <= VG_COORDINATE_MAX))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: point %zu, (%g, %g, %g), is not finite, or beyond %g",
+                     name, i + 1, x[0], x[1], x[2], VG_COORDINATE_MAX);
+  return VG_OK;
+}
+
 vg_status vg_size_samples_check(const char *name, size_t n,
                                 const double (*x)[3], const double *h,
                                 struct vg_error *err)
 {
   for (size_t i = 0; i < n; i++) {
-    if (!isfinite(x[i][0]) || !isfinite(x[i][1]) || !isfinite(x[i][2]))
-      return vg_fail(err, VG_ERR_INPUT, "%s: point %zu is not finite", name,
-                     i + 1);
+    if (vg_size_place_check(name, i, x[i], err) < 0) return VG_ERR_INPUT;
     if (!(h[i] > 0 && isfinite(h[i])))
       return vg_fail(err, VG_ERR_INPUT,
                      "%s: the edge length at point %zu, "

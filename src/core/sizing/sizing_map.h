@@ -8,6 +8,11 @@
 
 struct vg_size_samples; /* opaque, read-only */
 
+/** Point i of the values `name` must lie within VG_COORDINATE_MAX
+ * (core/mesh/mesh.h). VG_ERR_INPUT. */
+vg_status vg_size_place_check(const char *name, size_t i, const double x[3],
+                              struct vg_error *err);
+
 /** Check samples: VG_ERR_INPUT names the first point (counted from 1) that is
  * not finite, or whose spacing is not positive and finite. */
 vg_status vg_size_samples_check(const char *name, size_t n,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/geometry/tensor.h"
+#include "core/sizing/sizing_map.h"
 #include "core/sizing/sizing_mesh.h"
 
 /* Relative difference up to which two components of a full tensor count as
@@ -154,11 +155,9 @@ vg_status vg_size_metrics_read(const char *name, size_t n, const double (*x)[3],
   assert(order != VG_TENSOR_FILE);
   for (size_t i = 0; i < n; i++) {
     double m[6];
-    vg_status st;
+    vg_status st = vg_size_place_check(name, i, x[i], err);
 
-    if (!is_finite(x[i], 3))
-      return vg_fail(err, VG_ERR_INPUT, "%s: point %zu is not finite", name,
-                     i + 1);
+    if (st < 0) return st;
     convert(components, order, value + i * (size_t)components, m);
     st = check_metric(name, n, i, x[i], components, order, value, m, err);
     if (st < 0) return st;

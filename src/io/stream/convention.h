@@ -85,13 +85,6 @@ struct vg_inner_faces {
 vg_status vg_mesh_take_inner(struct vg_mesh *m, struct vg_inner_faces *found,
                              struct vg_error *err);
 
-/* Magnitudes of coordinates that are not 0. Predicates are exact for them
- * (core/geometry/predicates.h), and squares of lengths between 1e-17 and 1e18
- * are normal numbers in single precision, in which point placement, load and
- * clearance compare distances. */
-#define VG_COORDINATE_MIN 1e-45
-#define VG_COORDINATE_MAX 1e15
-
 /** Fail with VG_ERR_INPUT, naming the first point with a coordinate that is not
  * finite or has a magnitude that is not between VG_COORDINATE_MIN and
  * VG_COORDINATE_MAX. */

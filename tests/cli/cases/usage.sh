@@ -12,6 +12,7 @@ layers on the walls, tetrahedra elsewhere.
   check     check a surface or a volume mesh
   partition partition a volume mesh for a parallel flow solver
   convert   write a mesh or a surface in another format
+  metric    make the metric of the next mesh from a flow solution
   plan      forecast cells, memory and time of a run
   sweep     mesh with various subdomain sizes, ranks and threads; compare
   serve     start, monitor and resume runs from a browser

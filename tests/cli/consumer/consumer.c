@@ -342,7 +342,7 @@ static void names_causes(void)
 {
   CHECK(!strcmp(vanguard_cause(0), "none") &&
         !strcmp(vanguard_cause(6), "collision"));
-  CHECK(!vanguard_cause(-1) && !vanguard_cause(10));
+  CHECK(!vanguard_cause(-1) && !vanguard_cause(11));
 }
 
 static void grows_layers(void)
