@@ -19,6 +19,7 @@
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
 #include "run/common/text.h"
+#include "run/input/sizes.h"
 #include "run/input/solution.h"
 #include "run/report/report.h"
 #include "run/stages/output.h"
@@ -77,6 +78,25 @@ static const char *metric_suffix(const char *path)
   return NULL;
 }
 
+/* A .sol belongs to the only mesh of its name. */
+static vg_status check_mesh(const struct job *j, struct vg_error *err)
+{
+  struct vg_error none = VG_ERROR_INIT;
+  char *found = NULL;
+  vg_status st = vg_sizes_find_mesh(j->file, &found, &none);
+
+  if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "a path");
+  if (!found && st < 0 && !strstr(none.text, "both")) return VG_OK;
+  if (found && !strcmp(found, j->mesh) && !access(j->file, F_OK)) st = VG_OK;
+  else
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: the folder has another mesh of this name, %s; give "
+                 "another name by --out, or write a .vtu",
+                 j->file, found ? found : "or several");
+  free(found);
+  return st;
+}
+
 /* The file, and the lock on its names. */
 static vg_status claim(struct job *j, struct vg_error *err)
 {
@@ -106,6 +126,7 @@ static vg_status claim(struct job *j, struct vg_error *err)
                    "%s: this would overwrite the solution or its mesh; give "
                    "another name by --out",
                    j->file);
+  if (j->mesh && (st = check_mesh(j, err)) < 0) return st;
   stem = strndup(j->file, n_stem);
   if (!stem) return vg_fail_memory(err, "a file name");
   st = vg_outputs_place(stem, NULL, &j->outputs, err);
@@ -181,8 +202,9 @@ static vg_status add_fields(struct job *j, struct vg_display *show,
   for (size_t i = 0; i < j->s.n_field && st >= 0; i++) {
     vg_display_update(show, "derivatives", i, j->s.n_field);
     VG_TRY(vg_hessian(&j->e, j->s.field[i].value, hessian, err));
-    st = vg_multiscale_add(&j->e, (const double(*)[6])hessian, j->a->o.norm,
-                           i == 0, j->metric, &inner);
+    st = vg_multiscale_add(&j->e, j->s.field[i].value,
+                           (const double(*)[6])hessian, j->a->o.norm, i == 0,
+                           j->metric, &inner);
     if (st < 0)
       vg_fail(err, st, "%s: the field '%s' gives no metric: %s", j->a->in,
               j->s.field[i].name, inner.text);

@@ -249,6 +249,7 @@ vg_status vg_estimate_open(struct vg_estimate *e, const struct vg_mesh *m,
                            size_t n_layer, struct vg_error *err)
 {
   size_t inside = 0;
+  int positive = 0;
   vg_status st = VG_OK;
 
   assert(e && m && n_layer <= m->n_tet);
@@ -267,12 +268,20 @@ vg_status vg_estimate_open(struct vg_estimate *e, const struct vg_mesh *m,
   measure_volumes(e);
   VG_TRY(find_edges(e, err));
   VG_TRY(find_border(e, err));
-  for (size_t p = 0; p < m->n_point; p++) inside += e->ring[p] != 0;
-  if (!inside)
+  for (size_t p = 0; p < m->n_point; p++) {
+    inside += e->ring[p] != 0;
+    positive |= e->volume[p] > 0;
+  }
+  if (!positive)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "all points of the mesh are on its boundary, where second "
-                 "derivatives cannot be estimated; the mesh must be at least "
-                 "two cells wide");
+                 "no cell has a positive volume; the order of the nodes is "
+                 "mirrored");
+  else if (!inside)
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "all points outside of layers are on the boundary, where "
+                 "second derivatives cannot be estimated: without %zu layer "
+                 "cells, the mesh is less than two cells wide",
+                 e->n_left_out);
 done:
   if (st < 0) vg_estimate_release(e);
   return st;

@@ -15,6 +15,10 @@
  * determinants are positive where the solution is linear. */
 #define FLAT 1e-12
 
+/* Second differences over a cell, relative to the largest value, that rounding
+ * to 4-byte reals may cause: several units of 1.2e-7. */
+#define NOISE 1e-6
+
 /* The complexity is reached within CLOSE, after at most PASSES attempts. */
 #define CLOSE 1e-3
 enum { PASSES = 30, SWEEPS = 60 };
@@ -87,27 +91,47 @@ static void make_metric(const double hessian[6], double most, int norm,
   if (norm != VG_NORM_MAX) scale(out, 1 / root_of(det, 2 * norm + 3));
 }
 
-vg_status vg_multiscale_add(const struct vg_estimate *e,
+/* Largest eigenvalue of the Hessians at the points of the estimate. *rise: the
+ * largest difference from a linear function over the length of a cell, relative
+ * to the largest value. */
+static double largest_of(const struct vg_estimate *e, const double *value,
+                         const double (*hessian)[6], double *rise)
+{
+  double most = 0, size = 0;
+
+  *rise = 0;
+  for (size_t p = 0; p < e->m->n_point; p++) {
+    double own = largest_eigenvalue(hessian[p]), length;
+
+    size = fmax(size, fabs(value[p]));
+    if (!(own <= most)) most = own;
+    if (!(e->volume[p] > 0)) continue;
+    length = vg_cube_root(e->volume[p]);
+    *rise = fmax(*rise, own * length * length);
+  }
+  *rise = size > 0 ? *rise / size : 0;
+  return most;
+}
+
+vg_status vg_multiscale_add(const struct vg_estimate *e, const double *value,
                             const double (*hessian)[6], int norm, int is_first,
                             double (*metric)[6], struct vg_error *err)
 {
   const size_t n = e->m->n_point;
-  double(*own)[6] = vg_alloc(n, sizeof *own), most = 0, factor;
+  double rise, most = largest_of(e, value, hessian, &rise), factor;
+  double(*own)[6];
 
   assert(norm >= 0 && norm <= 16 && metric);
-  if (!own) return vg_fail_memory(err, "the metric of a solution");
-  for (size_t p = 0; p < n; p++) {
-    double least = largest_eigenvalue(hessian[p]);
-
-    if (least > most) most = least;
-  }
-  if (!(most > 0) || !isfinite(most)) {
-    free(own);
+  if (!isfinite(most))
+    return vg_fail(err, VG_ERR_INPUT, "its second derivatives are not finite");
+  if (!(rise > NOISE))
     return vg_fail(err, VG_ERR_INPUT,
-                   most > 0 ? "its second derivatives are not finite"
-                            : "it is linear, so that the present mesh "
-                              "represents it without an error");
-  }
+                   "it is linear, but for %.1g of its largest value over the "
+                   "length of a cell, which is the rounding of 4-byte reals; "
+                   "omit it, or subtract its mean value if it has more digits",
+                   rise);
+  own = vg_alloc(n, sizeof *own);
+  if (!own) return vg_fail_memory(err, "the metric of a solution");
   for (size_t p = 0; p < n; p++) make_metric(hessian[p], most, norm, own[p]);
   factor = factor_of(1 / complexity_of(e, (const double(*)[6])own));
   for (size_t p = 0; p < n; p++) {

@@ -40,8 +40,11 @@ struct vg_multiscale_report {
  * @param is_first 1: `metric` has none yet
  * @param metric   [n_point] intersection so far, each of complexity 1
  *
- * VG_ERR_INPUT: the solution is linear, so that every mesh is exact. */
-vg_status vg_multiscale_add(const struct vg_estimate *e,
+ * @param value    [n_point] the solution
+ *
+ * VG_ERR_INPUT: nowhere does the solution differ from a linear function, over
+ * the length of a cell, by more than the rounding of 4-byte reals. */
+vg_status vg_multiscale_add(const struct vg_estimate *e, const double *value,
                             const double (*hessian)[6], int norm, int is_first,
                             double (*metric)[6], struct vg_error *err);
 

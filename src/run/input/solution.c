@@ -106,6 +106,15 @@ static vg_status refuse_name(const char *path, const char *name,
                  name, *name ? "'" : "", *point ? point : "none");
 }
 
+static int is_empty(struct vg_input *in)
+{
+  char point[16], cell[16];
+
+  vg_vtu_array_names(in, "PointData", point, sizeof point);
+  vg_vtu_array_names(in, "CellData", cell, sizeof cell);
+  return !*point && !*cell;
+}
+
 static vg_status read_array(const char *path, struct vg_input *in,
                             const char *name, struct vg_solution *s,
                             struct vg_error *err)
@@ -118,8 +127,10 @@ static vg_status read_array(const char *path, struct vg_input *in,
   vg_status st = VG_OK;
 
   if (!array) return vg_fail_memory(err, "the name of a field");
-  if (!vg_vtu_has_array(in, array)) st = refuse_name(path, name, in, err);
-  else st = vg_vtu_values_parse(in, array, &m, &n, &value, err);
+  /* A file that cannot be read has no arrays: the reader says why. */
+  st = vg_vtu_values_parse(in, array, &m, &n, &value, err);
+  if (st == VG_ERR_FORMAT && !vg_vtu_has_array(in, array) && !is_empty(in))
+    st = refuse_name(path, name, in, err);
   free(array);
   if (st < 0) return st;
   if (s->n_field) vg_mesh_release(&m);
@@ -157,6 +168,27 @@ static vg_status read_column(const char *path, struct vg_input *in,
   return vg_fail(err, VG_ERR_INPUT,
                  "%s has %zu lines of values, but %s has %zu points", path, n,
                  s->mesh, s->m.n_point);
+}
+
+/* Lines with numbers of points must be in their order. */
+static vg_status check_numbers(const char *path, struct vg_input *in,
+                               struct vg_error *err)
+{
+  struct vg_error none = VG_ERROR_INIT;
+  double *id = NULL;
+  size_t n = 0;
+  vg_status st = vg_csv_column(in, "PointID", &n, &id, &none);
+
+  if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "numbers of points");
+  st = VG_OK; /* a table need not have numbers */
+  for (size_t p = 0; id && p < n && st >= 0; p++)
+    if (id[p] != id[0] + (double)p || id[0] > 1)
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "%s: line %zu has the PointID %g: the lines must be in the "
+                   "order of the points, from 0 or 1; sort them",
+                   path, p + 2, id[p]);
+  free(id);
+  return st;
 }
 
 /* Points of the table, if it has coordinates, must be those of the mesh. */
@@ -287,6 +319,7 @@ static vg_status read_csv(const char *path, const char *names, const char *mesh,
   }
   VG_TRY(read_mesh(path, s, err));
   VG_TRY(read_fields(path, &in, names, read_column, s, err));
+  VG_TRY(check_numbers(path, &in, err));
   st = compare_points(path, &in, s, err);
 done:
   vg_input_release(&in);

@@ -136,6 +136,19 @@ refused "the y of point 4 is 7" moved.csv --cells 10 --field Ma \
 sed '7s/,[^,]*$//' s.csv >short.csv
 refused "line 7: 5 columns" short.csv --cells 10 --field Ma \
   --mesh 1/box.mesh --out z.vtu
+awk -F, 'NR == 4 { kept = $0; next } { print } NR == 5 { print kept }' s.csv |
+  cut -d, -f1,5,6 >shuffled.csv
+refused "line 4 has the PointID 3" shuffled.csv --cells 10 --field Ma \
+  --mesh 1/box.mesh --out z.vtu
+sed 's/appended/none/; s/<VTKFile /<VTKFile compressor="vtkLZ4DataCompressor" /' \
+  s.vtu >lz4.vtu
+refused "only zlib is supported" lz4.vtu --cells 10 --field U:1 --out z.vtu
+cp 1/box.mesh z.mesh
+refused "another mesh of this name, z.mesh" s.vtu --cells 10 --field U:1 \
+  --out z.solb
+refused "another mesh of this name, z.mesh" s.vtu --cells 10 --field U:1 \
+  --out z.sol
+rm z.mesh
 refused "omit --field" 1/box.sol --cells 10 --field p --out z.vtu
 refused "a solution is read from" box.lb8.ugrid --cells 10 --out z.vtu
 sed 's/Float64" Name="U"/Float64" Name="V"/' s.vtu >renamed.vtu
