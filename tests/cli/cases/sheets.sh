@@ -170,6 +170,9 @@ if [ "$status" = 0 ]; then
     cgnscheck c.cgns >out 2>&1
     says out 'checking subregion "plate+faces"'
     lacks out "ERROR"
+    [ "$(grep WARNING out | sort | uniq -c | sort -n | xargs)" = "1 WARNING:16 \
+elements have invalid dimension 1 WARNING:32 elements have invalid dimension 3 \
+WARNING:dataclass not given" ] || fail "cgnscheck has other warnings"
   else echo "cgnscheck is not installed: its check is omitted"; fi
 else says err "HDF5"; fi
 
