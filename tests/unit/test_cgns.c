@@ -41,13 +41,36 @@ static void all_kinds_come_back(void **state)
     go_round(&m, is_wide, &back);
     mixed_same(&back, &m);
     for (int p = 0; p < 3; p++) {
-      assert_int_equal(back.patch[p].id, p + 1);
+      assert_int_equal(back.patch[p].id, m.patch[p].id);
       assert_string_equal(back.patch[p].name, name[p]);
     }
     assert_int_equal(back.patch[0].bc, 4);
     assert_int_equal(back.patch[0].bc_fun3d, 4000);
     assert_int_equal(back.patch[1].bc, 3);
     assert_int_equal(back.patch[2].bc, VG_BC_NONE);
+    vg_mesh_release(&m);
+    vg_mesh_release(&back);
+  }
+}
+
+/* Numbers that are not the order come back, unless two are the same. */
+static void numbers_come_back(void **state)
+{
+  static const int32_t id[3] = { 7, -2, 2147483647 };
+
+  (void)state;
+  for (int twice = 0; twice < 2; twice++) {
+    struct vg_mesh m = VG_MESH_INIT, back = VG_MESH_INIT;
+
+    mixed_make(&m, 5, 4);
+    for (int p = 0; p < 3; p++) {
+      m.patch[p].id = twice && p == 2 ? id[0] : id[p];
+      snprintf(m.patch[p].name, sizeof m.patch[p].name, "p%d", p);
+    }
+    go_round(&m, 0, &back);
+    assert_int_equal(back.n_patch, 3);
+    for (int p = 0; p < 3; p++)
+      assert_int_equal(back.patch[p].id, twice ? p + 1 : id[p]);
     vg_mesh_release(&m);
     vg_mesh_release(&back);
   }
@@ -801,6 +824,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_kinds_come_back),
+    cmocka_unit_test(numbers_come_back),
     cmocka_unit_test(every_condition_comes_back),
     cmocka_unit_test(bytes_follow_from_the_mesh),
     cmocka_unit_test(write_errors_are_reported),

@@ -165,6 +165,96 @@ static void applies_to_a_mesh(void **state)
   vg_mesh_release(&m);
 }
 
+/* Patches with names, and numbers that are their order. */
+static void name_patches(struct vg_mesh *m, const char *const name[4])
+{
+  io_make_t1(m, 0);
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(m->patch[i].id, i + 1);
+    m->patch[i].bc = VG_BC_NONE;
+    snprintf(m->patch[i].name, sizeof m->patch[i].name, "%s", name[i]);
+  }
+}
+
+/* Conditions of the patches after applying the lines by name. */
+static void expect_by_name(const char *const name[4], const char *lines,
+                           const int32_t bc[4], size_t n_missing)
+{
+  struct vg_mapbc b = VG_MAPBC_INIT;
+  struct vg_mapbc_match match;
+  struct vg_error err = VG_ERROR_INIT;
+  char text[1000];
+  struct vg_mesh m;
+
+  name_patches(&m, name);
+  snprintf(text, sizeof text, "1\n2\n3\n4\n%s", lines);
+  accept(text, &b);
+  if (vg_mapbc_apply_names("case", &b, 26, &m, &match, &err))
+    fail_msg("%s", err.text);
+  for (int i = 0; i < 4; i++) assert_int_equal(m.patch[i].bc, bc[i]);
+  assert_int_equal(match.n_missing, n_missing);
+  vg_mapbc_release(&b);
+  vg_mesh_release(&m);
+}
+
+static void refuse_by_name(const char *const name[4], const char *lines,
+                           const char *phrase)
+{
+  struct vg_mapbc b = VG_MAPBC_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  char text[1000];
+  struct vg_mesh m;
+
+  name_patches(&m, name);
+  snprintf(text, sizeof text, "1\n2\n3\n4\n%s", lines);
+  accept(text, &b);
+  assert_int_equal(vg_mapbc_apply_names("case", &b, 26, &m, NULL, &err),
+                   VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, phrase));
+  for (int i = 0; i < 4; i++) assert_int_equal(m.patch[i].bc, VG_BC_NONE);
+  vg_mapbc_release(&b);
+  vg_mesh_release(&m);
+}
+
+static void names_go_before_numbers_without_meaning(void **state)
+{
+  static const char *const plain[4] = { "wall", "symm", "far", "end" };
+  static const char *const other[4] = { "left wing", "", "disk", "a_name_of" };
+  static const char *const word[4] = { "patch__inlet_x_", "wall", "wall_8",
+                                       "b" };
+  static const int32_t four[4] = { 4, 1, 3, 2 };
+  static const int32_t none = VG_BC_NONE;
+
+  (void)state;
+  /* Other numbers; an entry that no patch has. */
+  expect_by_name(plain,
+                 "1 1 1 0 0 symm\n2 3 3 0 0 far\n5 4 4 0 0 wall\n"
+                 "7 2 2 0 0 end\n4 5 5 0 0 none\n",
+                 four, 0);
+  /* Names agree with numbers, in any order of the lines. */
+  expect_by_name(plain,
+                 "4 2 2 0 0 end\n2 1 1 0 0 symm\n1 4 4 0 0 wall\n"
+                 "3 3 3 0 0 far\n",
+                 four, 0);
+  /* Lines without a name, and patches without one. */
+  expect_by_name(plain, "1 4 4 0 0\n2 1 1 0 0\n3 3 3 0 0\n4 2 2 0 0\n", four,
+                 0);
+  expect_by_name(other,
+                 "9 4 4 0 0 left_wing\n2 1 1 0 0 patch_2\n"
+                 "3 3 3 0 0 a_name_of\n",
+                 (int32_t[]){ 4, 1, none, 3 }, 1);
+  /* Words of a CGNS file; of equal names, that with the number. */
+  expect_by_name(word,
+                 "5 1 1 0 0 (inlet x)\n6 4 4 0 0 wall\n8 2 2 0 0 wall\n"
+                 "4 3 3 0 0 b\n2 4 4 0 0 wall\n",
+                 (int32_t[]){ 1, 4, 2, 3 }, 0);
+  refuse_by_name(plain, "1 4 4 0 0 wall\n2 1 1 0 0 plane\n",
+                 "patch 2 is 'plane' here but 'symm' in the mesh");
+  refuse_by_name(plain, "1 1 1 0 0 a\n2 3 3 0 0 b\n", "remove or rename");
+  refuse_by_name(plain, "5 4 4 0 0 wall\n6 3 3 0 0 wall\n",
+                 "lines 5 and 6, with codes 4 and 3, both have the name");
+}
+
 static void writes_samples_byte_for_byte(void **state)
 {
   const char *path = io_temp("mapbc_out.mapbc");
@@ -327,6 +417,7 @@ int main(void)
     cmocka_unit_test(refuses_invalid_files),
     cmocka_unit_test(translates_codes),
     cmocka_unit_test(applies_to_a_mesh),
+    cmocka_unit_test(names_go_before_numbers_without_meaning),
     cmocka_unit_test(writes_samples_byte_for_byte),
     cmocka_unit_test(writes_patches_without_a_condition),
     cmocka_unit_test(an_output_is_known_again),

@@ -196,16 +196,20 @@ static void damaged_files_are_refused(void **state)
 
   (void)state;
   io_make_t1(&m, 1); /* 4 points, 1 cell */
-  refuse(&m, "sheet 1 1", "the word mesh is expected");
+  refuse(&m, "sheet 9 1", "the word mesh is expected");
   refuse(&m, "mesh 4 x", "the number of cells");
   refuse(&m, "mesh 4 1\nfan 1", "the word sheet is expected");
-  refuse(&m, "mesh 4 1\nsheet 1 2 a\n1 2 3\n1 2", "");
-  refuse(&m, "mesh 4 1\nsheet 1 1 a\n1 2 5\n", "point 5 does not exist");
-  refuse(&m, "mesh 4 1\nsheet 1 1 a\n1 2 0\n", "point 0 does not exist");
-  refuse(&m, "mesh 4 1\nsheet 1 1 a\n1 2 2\n", "a point twice");
-  refuse(&m, "mesh 4 1\nsheet 1 99999999 a\n1 2 3\n", "truncated");
-  refuse(&m, "mesh 4 1\nsheet 1 -1 a\n", "out of range");
+  refuse(&m, "mesh 4 1\nsheet 9 2 a\n1 2 3\n1 2", "");
+  refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 5\n", "point 5 does not exist");
+  refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 0\n", "point 0 does not exist");
+  refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 2\n", "a point twice");
+  refuse(&m, "mesh 4 1\nsheet 9 99999999 a\n1 2 3\n", "truncated");
+  refuse(&m, "mesh 4 1\nsheet 9 -1 a\n", "out of range");
   refuse(&m, "mesh 4 1\nsheet 3000000000 1 a\n1 2 3\n", "out of range");
+  refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 3\nsheet 2 1 b\n1 2 4\n",
+         "s:4: the number 2 of a sheet is the number of a patch of the mesh");
+  refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 3\nsheet 9 1 b\n1 2 4\n",
+         "s:4: the number 9 of a sheet is the number of two sheets");
   vg_mesh_release(&m);
 }
 

@@ -239,7 +239,7 @@ static void note_mesh(struct conversion *c)
     vg_note(&c->notes,
             ".%s holds surfaces: %zu triangles of sheets are omitted",
             c->suffix, m->n_sheet_tri);
-  else if (m->n_sheet && is_reordered(c))
+  else if (m->n_sheet && !c->sheets && !vg_format_holds_sheets(c->suffix))
     vg_note(&c->notes,
             ".%s has no faces between cells: %zu triangles of sheets are lost",
             c->suffix, m->n_sheet_tri);
@@ -346,15 +346,16 @@ static void check_ids(struct conversion *c)
 static vg_status write_sheets(struct conversion *c, struct vg_error *err)
 {
   const struct vg_mesh *m = &c->mesh;
+  const size_t before = c->outputs.n_file;
+  vg_status st;
 
   if (!(c->what & CELLS) || !c->n_cell || vg_format_holds_sheets(c->suffix) ||
       is_reordered(c))
     return VG_OK;
-  if (m->n_sheet_tri) {
-    c->sheets = vg_outputs_final(&c->outputs, VG_SHEET_SUFFIX);
-    if (!c->sheets) return vg_fail_memory(err, "a file name");
-  }
-  return vg_outputs_sheets(&c->outputs, m, m->n_point, c->n_cell, err);
+  st = vg_outputs_sheets(&c->outputs, m, m->n_point, c->n_cell, &c->notes, err);
+  if (st < 0 || c->outputs.n_file == before) return st;
+  c->sheets = vg_outputs_final(&c->outputs, VG_SHEET_SUFFIX);
+  return c->sheets ? VG_OK : vg_fail_memory(err, "a file name");
 }
 
 /* --- steps --------------------------------------------------------------- */

@@ -258,7 +258,12 @@ static vg_status write_files(struct run *r, struct vg_display *show,
            (unsigned long long)a->options.n_part);
   VG_TRY(vg_outputs_begin(&r->outputs, NULL, err));
   if (a->to_part) VG_TRY(write_file(r, suffix, write_part, err));
-  if (a->to_vtu) VG_TRY(write_file(r, "vtu", write_vtu, err));
+  if (a->to_vtu) {
+    VG_TRY(write_file(r, "vtu", write_vtu, err));
+    st = vg_outputs_sheets(&r->outputs, &r->mesh, r->mesh.n_point, r->n_cell,
+                           &r->notes, err);
+    VG_TRY(vg_outputs_failed(&r->outputs, st, err));
+  }
   if (a->to_foam) {
     VG_TRY(write_file(r, VG_FOAM_SUFFIX, write_foam, err));
     r->outputs.file[r->outputs.n_file - 1].is_case = 1;

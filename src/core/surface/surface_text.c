@@ -40,16 +40,32 @@ const char *vg_defect_heading(enum vg_defect_kind kind)
 }
 
 /* "patch 3 (wing), face 17", or "" if the finding has no such face. */
+/* The patch of a face, or NULL. */
+static const struct vg_patch *patch_of(const struct vg_mesh *m, size_t f)
+{
+  int is_tri = f < m->n_tri;
+  size_t q = f - m->n_tri;
+
+  if (f == SIZE_MAX || (!is_tri && q >= m->n_quad)) return NULL;
+  return &m->patch[is_tri ? m->tri_patch[f] : m->quad_patch[q]];
+}
+
+static int is_inner(const struct vg_mesh *m, size_t f)
+{
+  const struct vg_patch *p = patch_of(m, f);
+
+  return p && (p->inner != VG_INNER_NOT || p->is_sheet);
+}
+
 static void face_text(const struct vg_mesh *m, size_t f, char *text,
                       size_t size)
 {
   int is_tri = f < m->n_tri;
   size_t q = f - m->n_tri;
-  const struct vg_patch *p;
+  const struct vg_patch *p = patch_of(m, f);
 
   text[0] = 0;
-  if (f == SIZE_MAX || (!is_tri && q >= m->n_quad)) return;
-  p = &m->patch[is_tri ? m->tri_patch[f] : m->quad_patch[q]];
+  if (!p) return;
   snprintf(text, size, "patch %d%s%.*s%s, %s %zu", (int)p->id,
            p->name[0] ? " (" : "", VG_NAME_MAX, p->name, p->name[0] ? ")" : "",
            is_tri ? "face" : "quadrilateral", is_tri ? f + 1 : q + 1);
@@ -79,7 +95,7 @@ static const char *shell_text(const struct vg_defect *d)
          "exchanged; remove or turn it";
 }
 
-static const char *remedy(const struct vg_defect *d)
+static const char *remedy(const struct vg_mesh *m, const struct vg_defect *d)
 {
   switch (d->kind) {
   case VG_DEFECT_OPEN_EDGE:
@@ -104,6 +120,10 @@ static const char *remedy(const struct vg_defect *d)
     return "this triangle belongs to two bodies that touch; unite the "
            "bodies, or use --wrap";
   case VG_DEFECT_INTERSECTION:
+    if (is_inner(m, d->face[0]) || is_inner(m, d->face[1]))
+      return "these faces cross, overlap or touch; let the inner surface end "
+             "there with common edges, or move it away; a symmetry plane or "
+             "farfield on which it ends must be a patch of the surface file";
     return "these faces cross, overlap or touch; unite the bodies, or move "
            "the surfaces apart there";
   case VG_DEFECT_SHELL: return shell_text(d);
@@ -131,5 +151,5 @@ void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
   snprintf(text, size, "%s: %s%s%s%s%s%s at %s: %s", vg_defect_name(d->kind),
            one, *one && *two ? "; " : "", two,
            (*one || *two) && *points ? "; " : "", points,
-           *one || *two || *points ? "" : "surface", at, remedy(d));
+           *one || *two || *points ? "" : "surface", at, remedy(m, d));
 }

@@ -6,6 +6,7 @@
 #include "io/cgns/cgns.h"
 
 #include <assert.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -210,9 +211,23 @@ static vg_status layout_faces(struct layout *l, const char *word, size_t first,
                      err);
 }
 
+/* The family of a patch has its number, which CGNS has no place for. */
+static vg_status add_family(struct layout *l, const char *word, int32_t number,
+                            int64_t *id, struct vg_error *err)
+{
+  char text[16];
+  vg_status st = add_empty(l, l->base, word, "Family_t", id, err);
+
+  snprintf(text, sizeof text, "%" PRId32, number);
+  return st < 0
+         ? st
+         : add_text(l, *id, VG_CGNS_NUMBER, "Descriptor_t", text, NULL, err);
+}
+
 /* A sheet has a family without a condition, and the region of its faces. */
 static vg_status layout_sheet(struct layout *l, const char *word,
-                              uint64_t before, struct vg_error *err)
+                              const struct vg_patch *p, uint64_t before,
+                              struct vg_error *err)
 {
   static const int32_t two = 2;
   const struct vg_cgns_data dimension = { "I4", 1, { 1, 0 }, &two };
@@ -229,7 +244,7 @@ static vg_status layout_sheet(struct layout *l, const char *word,
   VG_TRY(
     add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
   VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
-  st = add_empty(l, l->base, word, "Family_t", &id, err);
+  st = add_family(l, word, p->id, &id, err);
 done:
   return st;
 }
@@ -249,7 +264,7 @@ static vg_status layout_condition(struct layout *l, const char *word,
   VG_TRY(
     add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
   VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
-  VG_TRY(add_empty(l, l->base, word, "Family_t", &id, err));
+  VG_TRY(add_family(l, word, p->id, &id, err));
   st = add_text(l, id, "FamilyBC", "FamilyBC_t", type ? type : "UserDefined",
                 NULL, err);
 done:
@@ -272,7 +287,7 @@ static vg_status layout_patches(struct layout *l, struct vg_error *err)
     VG_TRY(layout_faces(l, l->word[p], first, quad, 3, 0, err));
     VG_TRY(layout_faces(l, l->word[p], quad, end, 4, quad > first, err));
     st = m->patch[p].is_sheet
-         ? layout_sheet(l, l->word[p], before, err)
+         ? layout_sheet(l, l->word[p], &m->patch[p], before, err)
          : layout_condition(l, l->word[p], &m->patch[p], before, err);
   }
 done:

@@ -4,7 +4,8 @@
  *
  * A written file has one base and one zone, with a section per kind of cell,
  * followed by one or two sections per patch, named after it. Each patch has a
- * BC_t for its faces, and a Family_t of the same name with its condition.
+ * BC_t for its faces, and a Family_t of the same name with its condition and,
+ * as a Descriptor_t, its number.
  * Indices have 4 bytes, or 8 if the counts require it.
  *
  * The HDF5 library lays out the nodes, without the times that it would normally
@@ -43,8 +44,10 @@ void vg_library_hdf5(struct vg_library *out);
  * each BC_t with a PointRange are read; the cells are not used.
  * io/cgns/cgns_block.h describes how faces become triangles.
  *
- * Patches with the same name are one patch; they are numbered from 1 in the
- * order in which they appear. Conditions are used if USM3D has a counterpart.
+ * Patches with the same name are one patch. They have the numbers that Vanguard
+ * recorded in their families, if all of them have one, otherwise they are
+ * numbered from 1 in the order in which they appear. Conditions are used if
+ * USM3D has a counterpart.
  *
  * The HDF5 library runs in a child process, since damaged files may crash it.
  * @param out  unchanged on failure

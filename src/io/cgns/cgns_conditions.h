@@ -6,6 +6,9 @@
 
 #include "core/mesh/mesh.h"
 
+/** Descriptor_t of a Family_t with the number of its patch, as text. */
+#define VG_CGNS_NUMBER "PatchNumber"
+
 /** BCType_t of a patch ("BCWallViscous", ...); NULL if it has no condition, or
  * one without a counterpart. */
 const char *vg_cgns_condition(const struct vg_patch *p);

@@ -4,6 +4,7 @@
  * the elements. */
 #include "io/cgns/cgns_read.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,9 +126,22 @@ static vg_status read_families(struct vg_cgns_reader *r, int64_t base,
     memcpy(f->name, list[i].name, sizeof f->name);
     st = vg_cgns_child_text(r, list[i].id, "FamilyBC_t", NULL, f->condition,
                             err);
+    if (st >= 0)
+      st = vg_cgns_child_text(r, list[i].id, "Descriptor_t", VG_CGNS_NUMBER,
+                              f->number, err);
   }
   free(list);
   return st;
+}
+
+static const struct vg_cgns_family *find_family(const struct vg_cgns_reader *r,
+                                                const char *name)
+{
+  struct vg_cgns_family key = { .name = "" };
+
+  if (!r->n_family) return NULL;
+  snprintf(key.name, sizeof key.name, "%.*s", VG_CGNS_NAME - 1, name);
+  return bsearch(&key, r->family, r->n_family, sizeof key, by_name);
 }
 
 /* Find or create the patch with this name. condition "" means that of the
@@ -136,15 +150,11 @@ vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
                              const char *condition, uint32_t *at,
                              struct vg_error *err)
 {
-  struct vg_cgns_family key = { .name = "" };
-  const struct vg_cgns_family *f = NULL;
+  const struct vg_cgns_family *f = find_family(r, name);
   struct vg_patch *p;
   vg_status st = vg_soup_named_patch(&r->soup, name, strlen(name), at, err);
 
   if (st < 0) return st;
-  strncat(key.name, name, sizeof key.name - 1);
-  if (r->n_family)
-    f = bsearch(&key, r->family, r->n_family, sizeof key, by_name);
   p = &r->soup.m.patch[*at];
   if (p->bc == VG_BC_NONE && *condition) vg_cgns_take_condition(condition, p);
   if (p->bc == VG_BC_NONE && f) vg_cgns_take_condition(f->condition, p);
@@ -698,6 +708,40 @@ static vg_status set_axes(struct vg_mesh *m, struct vg_error *err)
   return st;
 }
 
+static int by_value(const void *a, const void *b)
+{
+  int32_t p = *(const int32_t *)a, q = *(const int32_t *)b;
+
+  return (p > q) - (p < q);
+}
+
+/* Gives the patches the numbers that their families record, if all do and the
+ * numbers differ. */
+static vg_status restore_numbers(struct vg_cgns_reader *r, struct vg_error *err)
+{
+  struct vg_mesh *m = &r->soup.m;
+  int32_t *id = vg_alloc(2 * m->n_patch, sizeof *id), *sorted;
+  int is_valid = 1;
+
+  if (!id) return vg_fail_memory(err, "the patches");
+  sorted = id + m->n_patch;
+  for (size_t p = 0; p < m->n_patch && is_valid; p++) {
+    const struct vg_cgns_family *f = find_family(r, m->patch[p].name);
+    int64_t v;
+
+    is_valid = f && vg_parse_int(f->number, strlen(f->number), &v) &&
+               v >= INT32_MIN && v <= INT32_MAX;
+    if (is_valid) id[p] = sorted[p] = (int32_t)v;
+  }
+  if (is_valid && m->n_patch)
+    qsort(sorted, m->n_patch, sizeof *sorted, by_value);
+  for (size_t p = 1; p < m->n_patch && is_valid; p++)
+    is_valid = sorted[p] != sorted[p - 1];
+  for (size_t p = 0; p < m->n_patch && is_valid; p++) m->patch[p].id = id[p];
+  free(id);
+  return VG_OK;
+}
+
 static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
 {
   struct vg_mesh *m = &r->soup.m;
@@ -721,6 +765,7 @@ static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
   if (!has_cells) vg_mesh_keep_boundary(m);
   VG_TRY(vg_mesh_turn(m, NULL, err));
   VG_TRY(set_axes(m, err));
+  VG_TRY(restore_numbers(r, err));
 done:
   return st;
 }

@@ -13,6 +13,7 @@ enum { VG_CGNS_N_ELEMENT = 7 };
 
 struct vg_cgns_family {
   char name[VG_CGNS_NAME], condition[VG_CGNS_NAME];
+  char number[VG_CGNS_NAME]; /* of its patch, if Vanguard wrote it; or "" */
 };
 
 struct vg_cgns_reader {

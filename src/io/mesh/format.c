@@ -122,15 +122,16 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
  *   KIND  of CAD files, which io/cad reads with its own options
  *   USES  INPUT: a project's surface may have the suffix; TESSELLATION: its
  *         triangles approximate a shape and are not meant for meshing; SHEETS:
- *         it holds faces between cells */
+ *         it holds faces between cells; ORDER: its patches have names, and
+ *         numbers only by their order */
 #define READ_AND_WRITTEN(ROW)                                                  \
-  ROW("stl", read_stl, vg_stl_write, NONE, INPUT | TESSELLATION)               \
+  ROW("stl", read_stl, vg_stl_write, NONE, INPUT | TESSELLATION | ORDER)       \
   ROW("tri", read_tri, vg_tri_write, NONE, INPUT | TESSELLATION)               \
-  ROW("obj", read_obj, vg_obj_write, NONE, INPUT | TESSELLATION)               \
+  ROW("obj", read_obj, vg_obj_write, NONE, INPUT | TESSELLATION | ORDER)       \
   ROW("mesh", read_medit, vg_medit_write, NONE, INPUT | SHEETS)                \
   ROW("meshb", read_medit, vg_medit_write, NONE, INPUT | SHEETS)               \
   ROW("msh", read_gmsh, vg_gmsh_write, NONE, INPUT | SHEETS)                   \
-  ROW("cgns", read_cgns, vg_cgns_write, NONE, INPUT | SHEETS)                  \
+  ROW("cgns", read_cgns, vg_cgns_write, NONE, INPUT | SHEETS | ORDER)          \
   UGRID(ROW, "b8.ugrid")                                                       \
   UGRID(ROW, "lb8.ugrid")                                                      \
   UGRID(ROW, "b4.ugrid")                                                       \
@@ -164,7 +165,7 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   ROW(suffix, vg_ugrid_read, vg_ugrid_write, NONE, INPUT)
 #define ALL(ROW) READ_AND_WRITTEN(ROW) WRITTEN(ROW) READ_ONLY(ROW)
 
-enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4 };
+enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4, ORDER = 8 };
 
 static const struct format {
   const char *suffix;
@@ -348,6 +349,7 @@ vg_status vg_format_use_mapbc(const char *path, struct vg_mesh *m,
   const int is_named = info->mapbc && *info->mapbc;
   char *name = is_named ? strdup(info->mapbc)
                         : companion(path, ".mapbc", ".mapbc.gz");
+  const struct format *f = find(path, without_gz(path));
   struct vg_mapbc b = VG_MAPBC_INIT;
   vg_status st = VG_OK;
   int is_own = 0;
@@ -361,7 +363,10 @@ vg_status vg_format_use_mapbc(const char *path, struct vg_mesh *m,
     goto done;
   }
   VG_TRY(vg_mapbc_read(name, &b, err));
-  VG_TRY(vg_mapbc_apply(&b, m, &info->match, err));
+  if (f && f->uses & ORDER)
+    VG_TRY(
+      vg_mapbc_apply_names(name, &b, VG_CGNS_WORD_MOST, m, &info->match, err));
+  else VG_TRY(vg_mapbc_apply(&b, m, &info->match, err));
   info->has_mapbc = 1;
   info->layout = b.layout;
 done:

@@ -137,6 +137,24 @@ done:
   return st;
 }
 
+/* A sheet has a number that no patch and no other sheet has. */
+static vg_status check_number(const struct reading *r, int64_t id,
+                              struct vg_error *err)
+{
+  const char *what = NULL;
+
+  for (size_t i = 0; i < r->m->n_patch && !what; i++)
+    if (r->m->patch[i].id == id) what = "the number of a patch of the mesh";
+  for (size_t i = 0; i < r->n_sheet && !what; i++)
+    if (r->sheet[i].id == id) what = "the number of two sheets";
+  if (!what) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s:%zu: the number %" PRId64 " of a sheet is %s; give the "
+                 "sheet a number that nothing else has, or remove the file if "
+                 "it belongs to another mesh",
+                 r->in->path, r->in->line, id, what);
+}
+
 static vg_status read_sheet(struct reading *r, struct vg_error *err)
 {
   struct vg_patch *p;
@@ -149,6 +167,7 @@ static vg_status read_sheet(struct reading *r, struct vg_error *err)
   VG_TRY(vg_input_int(r->in, &n, "the number of triangles", err));
   if (id < INT32_MIN || id > INT32_MAX || n < 0)
     return vg_input_fail(r->in, err, "a number is out of range");
+  VG_TRY(check_number(r, id, err));
   if (vg_reserve(&r->sheet, &r->cap_sheet, r->n_sheet + 1, sizeof *r->sheet))
     return vg_fail_memory(err, "the sheets");
   p = &r->sheet[r->n_sheet++];

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "io/stream/convention.h"
+#include "io/stream/patch_words.h"
 
 /* --- codes --- */
 
@@ -393,41 +394,6 @@ static void count_unused(const struct vg_mapbc *b, const struct vg_patch **list,
   }
 }
 
-vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
-                         struct vg_mapbc_match *match, struct vg_error *err)
-{
-  struct vg_mapbc_match found = { 0, 0, 0, 0 };
-  const struct vg_patch **list = sorted(b);
-  unsigned char *used = vg_calloc(b->n, 1);
-  int *axis = vg_alloc(m->n_patch, sizeof *axis);
-  vg_status st = VG_OK;
-
-  assert(b->entry || !b->n);
-  if (!list || !used || !axis)
-    st = vg_fail_memory(err, "the boundary conditions");
-  else st = vg_patch_axes(m, axis, err);
-  if (st == VG_OK) {
-    for (size_t i = 0; i < m->n_patch; i++) {
-      size_t at = find(list, b->n, m->patch[i].id);
-
-      if (at == SIZE_MAX) {
-        if (!found.n_missing++) found.first_missing = m->patch[i].id;
-        continue;
-      }
-      used[at] = 1;
-      give(b, list[at], axis[i], m->patch + i);
-    }
-    count_unused(b, list, used, &found);
-    if (match) *match = found;
-  }
-  free(list);
-  free(used);
-  free(axis);
-  return st;
-}
-
-/* --- writing --- */
-
 static void written_name(const struct vg_patch *p, char name[VG_NAME_MAX])
 {
   size_t n = 0;
@@ -440,6 +406,220 @@ static void written_name(const struct vg_patch *p, char name[VG_NAME_MAX])
   name[n] = 0;
   if (!n) snprintf(name, VG_NAME_MAX, "patch_%d", p->id);
 }
+
+/* Finds the entry of each patch: at[n_patch], indices into `list`; SIZE_MAX: it
+ * has none. */
+static void find_by_number(const struct vg_mapbc *b,
+                           const struct vg_patch **list,
+                           const struct vg_mesh *m, size_t *at)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    at[i] = find(list, b->n, m->patch[i].id);
+}
+
+/* A name in sorted order: of entry `at` of the list, or of patch `at`. */
+struct named {
+  char name[VG_PATCH_WORD];
+  size_t at;
+};
+
+static int compare_named(const void *a, const void *b)
+{
+  const struct named *p = a, *q = b;
+  int order = strcmp(p->name, q->name);
+
+  return order ? order : (p->at > q->at) - (p->at < q->at);
+}
+
+/* First element with this name, or n. */
+static size_t find_name(const struct named *list, size_t n, const char *name)
+{
+  size_t lo = 0, hi = n;
+
+  while (lo < hi) {
+    size_t mid = lo + (hi - lo) / 2;
+
+    if (strcmp(list[mid].name, name) < 0) lo = mid + 1;
+    else hi = mid;
+  }
+  return lo < n && !strcmp(list[lo].name, name) ? lo : n;
+}
+
+/* The names of entries and patches, sorted. An entry is listed by its name and,
+ * if that differs, by the word that replaces it in a CGNS file. */
+struct names {
+  const char *path;
+  const struct vg_patch **list;
+  struct named *entry, *patch;
+  size_t n_list, n_entry, n_patch;
+};
+
+static vg_status collect_names(const struct vg_mapbc *b,
+                               const struct vg_mesh *m, size_t most,
+                               struct names *s, struct vg_error *err)
+{
+  const struct vg_mesh entries = { .n_patch = b->n, .patch = b->entry };
+  char(*word)[VG_PATCH_WORD] = vg_patch_words(&entries, most);
+
+  s->entry = vg_alloc(2 * b->n, sizeof *s->entry);
+  s->patch = vg_alloc(m->n_patch, sizeof *s->patch);
+  if (!word || !s->entry || !s->patch) {
+    free(word);
+    return vg_fail_memory(err, "the names in a .mapbc");
+  }
+  for (size_t i = 0; i < b->n; i++) {
+    struct named *to = s->entry + s->n_entry;
+
+    if (!*s->list[i]->name) continue;
+    written_name(s->list[i], to->name);
+    to[0].at = to[1].at = i;
+    strcpy(to[1].name, word[s->list[i] - b->entry]);
+    s->n_entry += 1 + (strcmp(to[0].name, to[1].name) != 0);
+  }
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (!*m->patch[i].name) continue;
+    written_name(m->patch + i, s->patch[s->n_patch].name);
+    s->patch[s->n_patch++].at = i;
+  }
+  if (s->n_entry) qsort(s->entry, s->n_entry, sizeof *s->entry, compare_named);
+  if (s->n_patch) qsort(s->patch, s->n_patch, sizeof *s->patch, compare_named);
+  free(word);
+  return VG_OK;
+}
+
+/* Is the entry meant for a patch of the mesh that has its name? */
+static int is_of_patch(const struct names *s, size_t entry)
+{
+  for (size_t k = 0; k < s->n_entry; k++)
+    if (s->entry[k].at == entry &&
+        find_name(s->patch, s->n_patch, s->entry[k].name) < s->n_patch)
+      return 1;
+  return 0;
+}
+
+static int is_same_condition(const struct vg_patch *a, const struct vg_patch *b)
+{
+  return a->bc == b->bc && a->bc_fun3d == b->bc_fun3d && a->family == b->family;
+}
+
+/* No entry has the name of the patch, if it has one. */
+static vg_status find_unnamed(const struct names *s, const struct vg_patch *p,
+                              size_t *at, struct vg_error *err)
+{
+  const size_t k = find(s->list, s->n_list, p->id);
+
+  *at = k;
+  if (k == SIZE_MAX || !*s->list[k]->name) return VG_OK;
+  if (is_of_patch(s, k)) *at = SIZE_MAX;
+  else if (*p->name)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: patch %d is '%s' here but '%s' in the mesh, whose "
+                   "format has names, and numbers only by their order; write "
+                   "the names of the mesh into the .mapbc, or no names to have "
+                   "its numbers used; remove or rename the .mapbc if it "
+                   "belongs to another mesh",
+                   s->path, (int)p->id, s->list[k]->name, p->name);
+  return VG_OK;
+}
+
+/* The entry with the name of the patch; of several, that with its number. */
+static vg_status find_named(const struct names *s, const struct vg_patch *p,
+                            size_t *at, struct vg_error *err)
+{
+  char name[VG_NAME_MAX];
+  size_t k;
+
+  written_name(p, name);
+  k = *p->name ? find_name(s->entry, s->n_entry, name) : s->n_entry;
+  if (k == s->n_entry) return find_unnamed(s, p, at, err);
+  *at = s->entry[k].at;
+  for (size_t i = k; i < s->n_entry && !strcmp(s->entry[i].name, name); i++)
+    if (s->list[s->entry[i].at]->id == p->id) {
+      *at = s->entry[i].at;
+      return VG_OK;
+    }
+  for (size_t i = k; i < s->n_entry && !strcmp(s->entry[i].name, name); i++) {
+    const struct vg_patch *a = s->list[*at], *b = s->list[s->entry[i].at];
+
+    if (!is_same_condition(a, b))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: lines %d and %d, with codes %d and %d, both have the "
+                     "name '%s' of patch %d of the mesh, whose format has "
+                     "names, and numbers only by their order; give the lines "
+                     "different names, or this patch's number to one of them",
+                     s->path, (int)a->id, (int)b->id, (int)a->bc, (int)b->bc,
+                     p->name, (int)p->id);
+  }
+  return VG_OK;
+}
+
+static vg_status find_by_name(const char *path, const struct vg_mapbc *b,
+                              const struct vg_patch **list, size_t most,
+                              const struct vg_mesh *m, size_t *at,
+                              struct vg_error *err)
+{
+  struct names s = { .path = path, .list = list, .n_list = b->n };
+  vg_status st = collect_names(b, m, most, &s, err);
+
+  for (size_t i = 0; i < m->n_patch && st >= 0; i++)
+    st = find_named(&s, m->patch + i, &at[i], err);
+  free(s.entry);
+  free(s.patch);
+  return st;
+}
+
+/* most: 0 to match by number, otherwise as in vg_mapbc_apply_names. */
+static vg_status apply(const char *path, const struct vg_mapbc *b, size_t most,
+                       struct vg_mesh *m, struct vg_mapbc_match *match,
+                       struct vg_error *err)
+{
+  struct vg_mapbc_match found = { 0, 0, 0, 0 };
+  const struct vg_patch **list = sorted(b);
+  unsigned char *used = vg_calloc(b->n, 1);
+  int *axis = vg_alloc(m->n_patch, sizeof *axis);
+  size_t *at = vg_alloc(m->n_patch, sizeof *at);
+  vg_status st = VG_OK;
+
+  assert(b->entry || !b->n);
+  if (!list || !used || !axis || !at)
+    VG_TRY(vg_fail_memory(err, "the boundary conditions"));
+  VG_TRY(vg_patch_axes(m, axis, err));
+  if (most) VG_TRY(find_by_name(path, b, list, most, m, at, err));
+  else find_by_number(b, list, m, at);
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (at[i] == SIZE_MAX) {
+      if (!found.n_missing++) found.first_missing = m->patch[i].id;
+      continue;
+    }
+    used[at[i]] = 1;
+    give(b, list[at[i]], axis[i], m->patch + i);
+  }
+  count_unused(b, list, used, &found);
+  if (match) *match = found;
+done:
+  free(list);
+  free(used);
+  free(axis);
+  free(at);
+  return st;
+}
+
+vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
+                         struct vg_mapbc_match *match, struct vg_error *err)
+{
+  return apply("", b, 0, m, match, err);
+}
+
+vg_status vg_mapbc_apply_names(const char *path, const struct vg_mapbc *b,
+                               size_t most, struct vg_mesh *m,
+                               struct vg_mapbc_match *match,
+                               struct vg_error *err)
+{
+  assert(path && most);
+  return apply(path, b, most, m, match, err);
+}
+
+/* --- writing --- */
 
 static void codes_of(const struct vg_patch *p, int axis, int32_t *usm3d,
                      int32_t *fun3d, size_t *n_unset)

@@ -52,6 +52,20 @@ void vg_mapbc_release(struct vg_mapbc *b);
 vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
                          struct vg_mapbc_match *match, struct vg_error *err);
 
+/** As vg_mapbc_apply, for a mesh whose patches have names, but numbers only by
+ * their order. Entries are matched by name: as vg_mapbc_write writes it, or as
+ * a word of vg_patch_words. A patch or an entry without a name is matched by
+ * number, and so are several entries with the same name.
+ * @param path  the .mapbc, for messages
+ * @param most  maximum length of a word
+ * VG_ERR_INPUT, and m is unchanged: the entry with the number of a patch has
+ * another name, and neither the patch has an entry nor the entry a patch of the
+ * same name; or entries with the same name have different codes. */
+vg_status vg_mapbc_apply_names(const char *path, const struct vg_mapbc *b,
+                               size_t most, struct vg_mesh *m,
+                               struct vg_mapbc_match *match,
+                               struct vg_error *err);
+
 /** Write the patches of m. White space in names becomes '_', an empty name
  * patch_ID.
  * @param title    first line of the VGRID layout; NULL: "vanguard"

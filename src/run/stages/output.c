@@ -639,7 +639,7 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   return st;
 }
 
-vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+vg_status vg_outputs_mesh(struct vg_outputs *o, struct vg_problem *p,
                           const struct vg_layer_stage *layers,
                           struct vg_comm *comm, const struct vg_slices *mesh,
                           int threads, struct vg_error *err)
@@ -655,9 +655,10 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   assert(!o->n_open && o->temp_dir);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (!vg_slices_is_ugrid(o->item[i])) st = write_item(&w, o->item[i], err);
+  if (!o->is_guest) vg_outputs_note_sheets(o, mesh->boundary, &p->notes);
   if (st >= 0 && !o->is_guest && vg_outputs_need_sheets(o))
     st = vg_outputs_sheets(o, mesh->boundary, mesh->n_point, cells_of(mesh),
-                           err);
+                           &p->notes, err);
   st = vg_comm_agree(comm, st, err);
   if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
   if (st >= 0 && !o->is_guest && layers->is_on)

@@ -67,15 +67,20 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   const struct vg_settings *s,
                                   struct vg_error *err);
 
+/** Notes for the formats of the write list that lose the sheets of m. */
+void vg_outputs_note_sheets(const struct vg_outputs *o, const struct vg_mesh *m,
+                            struct vg_notes *notes);
+
 /** Writes the sheets of m to STEM.sheets, which is added to the files. If m has
- * no sheets and a .ugrid is among the files, with which it would be read, such
- * a file of an earlier mesh is removed by vg_outputs_commit. On rank 0, after
- * the files of the mesh have been written.
+ * no sheets, such a file of an earlier mesh is removed by vg_outputs_commit. A
+ * STEM.sheets that Vanguard did not write stays, with a note. On rank 0, after
+ * the files of the mesh have been written, one of which is in a format to which
+ * STEM.sheets belongs.
  *
  * @param n_point, n_cell  of the whole mesh */
 vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
                             uint64_t n_point, uint64_t n_cell,
-                            struct vg_error *err);
+                            struct vg_notes *notes, struct vg_error *err);
 
 /** Parses the write list and determines where files are written. Refuses files
  * that would overwrite an input of p.
@@ -122,10 +127,11 @@ vg_status vg_outputs_close(struct vg_outputs *o, vg_status st,
                            struct vg_error *err);
 
 /** Writes the mesh in all other requested formats, the resolved deck, and the
- * walls with their layers, if any. Collective. Formats that io/slices/slices.h
+ * walls with their layers, if any; notes are added to those of p. Collective.
+ * Formats that io/slices/slices.h
  * does not write are written from a copy of the whole mesh, by a single rank.
  * Called after vg_outputs_close. */
-vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+vg_status vg_outputs_mesh(struct vg_outputs *o, struct vg_problem *p,
                           const struct vg_layer_stage *layers,
                           struct vg_comm *comm, const struct vg_slices *mesh,
                           int threads, struct vg_error *err);

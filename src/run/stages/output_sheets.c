@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
@@ -47,22 +48,60 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                  "cgns, msh, meshb, fluent.msh or foam");
 }
 
+/* Does this form hold cells, but neither sheets nor a STEM.sheets? */
+static int loses_sheets(const char *form)
+{
+  struct vg_foam_options options;
+
+  return !takes_sheets(form) && !vg_foam_word(form, &options) &&
+         !vg_format_holds_sheets(form) && strcmp(form, "mapbc") &&
+         strcmp(form, "fun3d.mapbc");
+}
+
+void vg_outputs_note_sheets(const struct vg_outputs *o, const struct vg_mesh *m,
+                            struct vg_notes *notes)
+{
+  for (size_t i = 0; i < o->n_item && m->n_sheet_tri; i++)
+    if (loses_sheets(o->item[i]))
+      vg_note(notes,
+              ".%s has no faces between cells: %zu triangles of sheets are "
+              "not in it",
+              o->item[i], m->n_sheet_tri);
+}
+
+/* Whether STEM.sheets exists, and whether Vanguard wrote it. */
+static vg_status look_for_sheets(const struct vg_outputs *o, int *exists,
+                                 int *is_own, struct vg_notes *notes,
+                                 struct vg_error *err)
+{
+  char *path = vg_outputs_final(o, VG_SHEET_SUFFIX);
+
+  if (!path) return vg_fail_memory(err, "the output paths");
+  *exists = !access(path, F_OK);
+  *is_own = vg_sheet_file_is_own(path);
+  if (*exists && !*is_own)
+    vg_note(notes,
+            "%s exists, is not a file of Vanguard, and is neither overwritten "
+            "nor removed; remove it or write under another name if it does not "
+            "belong to this mesh",
+            path);
+  free(path);
+  return VG_OK;
+}
+
 vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
                             uint64_t n_point, uint64_t n_cell,
-                            struct vg_error *err)
+                            struct vg_notes *notes, struct vg_error *err)
 {
-  int has_ugrid = 0;
+  int exists = 0, is_own = 0;
   char *path;
   vg_status st;
 
   assert(o->temp_dir && !o->is_guest);
+  st = look_for_sheets(o, &exists, &is_own, notes, err);
+  if (st < 0 || (exists && !is_own)) return st;
   if (!m->n_sheet_tri) {
-    path = vg_outputs_final(o, VG_SHEET_SUFFIX);
-    if (!path) return vg_fail_memory(err, "the output paths");
-    for (size_t i = 0; i < o->n_file; i++)
-      has_ugrid |= strstr(o->file[i].suffix, "ugrid") != NULL;
-    o->drops_sheets = has_ugrid && vg_sheet_file_is_own(path);
-    free(path);
+    o->drops_sheets = is_own;
     return VG_OK;
   }
   path = vg_outputs_temp_path(o, VG_SHEET_SUFFIX);

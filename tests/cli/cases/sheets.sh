@@ -103,6 +103,46 @@ vanguard convert all/both.b8.ugrid o.stl
 exits 0
 says out "48 triangles of sheets are omitted"
 
+# In the same way next to a .vtu of a partition.
+vanguard partition all/both.msh -n 2 --write vtu --out part
+exits 0
+says out "part.sheets"
+same part.sheets all/both.sheets
+
+# A .sheets of an earlier mesh is removed, one that Vanguard did not write stays.
+duct plain
+vanguard mesh plain.stl --flow internal --quiet --hmax 0.3 --write msh --out o
+exits 0
+for form in su2 vtu; do
+  vanguard convert all/both.msh stale.$form
+  exists stale.sheets
+  vanguard convert o/plain.msh stale.$form
+  exits 0
+  absent stale.sheets
+done
+echo "my sheets" >mine.sheets
+vanguard convert all/both.msh mine.su2
+exits 0
+says out "mine.sheets exists, is not a file of Vanguard"
+says out "48 triangles of sheets are lost"
+vanguard convert o/plain.msh mine.vtu
+exits 0
+echo "my sheets" | is mine.sheets
+vanguard mesh both.stl --flow internal --quiet --sheets fin,plate --hmax 0.2 \
+  --write su2,cogsg,pvtu --out lost
+exits 0
+for form in cogsg pvtu; do
+  says out ".$form has no faces between cells: 48 triangles of sheets are not"
+done
+lacks out ".su2 has no faces"
+
+# A number that a patch has.
+sed 's/^sheet 7 /sheet 2 /' all/both.sheets >part.sheets
+cp all/both.b8.ugrid part.b8.ugrid
+vanguard check part.b8.ugrid
+exits 1
+says err "part.sheets:4: the number 2 of a sheet is the number of a patch"
+
 # A file of an earlier mesh is removed, one of another mesh refused.
 exists all/both.sheets
 vanguard mesh both.stl --flow internal --quiet --baffles fin,plate --hmax 0.12 \
@@ -130,6 +170,9 @@ if [ "$status" = 0 ]; then
     cgnscheck c.cgns >out 2>&1
     says out 'checking subregion "plate+faces"'
     lacks out "ERROR"
+    [ "$(grep WARNING out | sort | uniq -c | sort -n | xargs)" = "1 WARNING:16 \
+elements have invalid dimension 1 WARNING:32 elements have invalid dimension 3 \
+WARNING:dataclass not given" ] || fail "cgnscheck has other warnings"
   else echo "cgnscheck is not installed: its check is omitted"; fi
 else says err "HDF5"; fi
 
@@ -190,6 +233,7 @@ duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
 vanguard mesh cut.stl --flow internal --sheets cut
 exits 1
 says out "self-intersection: patch 2"
+says out "let the inner surface end there with common edges"
 vanguard mesh disk.stl --flow internal --sheets disk \
   --write cogsg,stl --out none
 exits 1
