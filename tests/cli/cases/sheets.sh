@@ -185,6 +185,7 @@ else echo "gmsh is not installed: its check is omitted"; fi
 # OpenFOAM reads the zones, and makes baffles of one.
 if command -v createBaffles >/dev/null; then
   set +u
+  set -- # the file sources its arguments
   # shellcheck disable=SC1090
   [ -n "${WM_PROJECT_DIR:-}" ] ||
     . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
