@@ -40,3 +40,6 @@ valid() {
   exits 0
   says out "valid"
 }
+
+# full FILE PATCH: share of its faces with all layers, in percent.
+full() { awk -v patch="$2" '$2 == patch && NF > 6 { print $4; exit }' "$1"; }

@@ -204,6 +204,103 @@ static void a_sheet_behind_a_baffle(void **state)
   vg_mesh_release(&m);
 }
 
+/* Backs of baffles come before those of sheets, whatever the order of their
+ * fronts. */
+static void fronts_of_backs(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  for (int i = 0; i < 7; i++) {
+    vg_mesh_add_patch(&m, i + 1, "");
+    m.patch[i].inner = i == 0 ? VG_INNER_NOT
+                     : i < 4  ? VG_INNER_FRONT
+                              : VG_INNER_BACK;
+  }
+  m.patch[1].is_sheet = m.patch[3].is_sheet = 1;
+  m.patch[5].is_sheet = m.patch[6].is_sheet = 1;
+  assert_int_equal(vg_mesh_front_patch(&m, 0), 0);
+  assert_int_equal(vg_mesh_front_patch(&m, 2), 2);
+  assert_int_equal(vg_mesh_front_patch(&m, 4), 2);
+  assert_int_equal(vg_mesh_front_patch(&m, 5), 1);
+  assert_int_equal(vg_mesh_front_patch(&m, 6), 3);
+  vg_mesh_release(&m);
+}
+
+static void reverse(uint32_t v[3])
+{
+  const uint32_t second = v[1];
+
+  v[1] = v[2];
+  v[2] = second;
+}
+
+/* A sheet with every other triangle reversed, the first one included: all of
+ * its front looks down. */
+static void triangles_that_disagree(void **state)
+{
+  const double o[3] = { -.5, -.5, .1 };
+  struct vg_inner_report r;
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  shape_box(&m, 4, 1);
+  add_sheet(&m, o, x, y, 4);
+  for (size_t t = m.n_tri - 32; t < m.n_tri; t += 2) reverse(m.tri[t]);
+  assert_int_equal(put_back(&m, &r, NULL), VG_OK);
+  expect(&m, &r, 36, 2, 11);
+  assert_int_equal(r.n_turned, 16);
+  assert_true(fabs(r.turned_at[2] - .1) < 1e-12);
+  for (size_t t = 0; t < m.n_tri; t++) {
+    const double *a = m.point[m.tri[t][0]], *b = m.point[m.tri[t][1]];
+    const double *c = m.point[m.tri[t][2]];
+    const double up = (b[0] - a[0]) * (c[1] - a[1]) -
+                      (b[1] - a[1]) * (c[0] - a[0]);
+    const int32_t side = m.patch[m.tri_patch[t]].inner;
+
+    if (side) assert_true(side == VG_INNER_FRONT ? up < 0 : up > 0);
+  }
+  vg_mesh_release(&m);
+}
+
+/* A strip of n quadrilaterals around the z axis, with half a twist. */
+static void add_strip(struct vg_mesh *m, uint32_t n)
+{
+  const size_t patch = vg_mesh_add_patch(m, 40, "sheet");
+  const uint32_t first = (uint32_t)m->n_point;
+
+  for (uint32_t i = 0; i < n; i++)
+    for (int k = -1; k <= 1; k += 2) {
+      const double a = 2 * acos(-1) * i / n, r = .5 + .2 * k * cos(a / 2);
+
+      shape_point(m, r * cos(a), r * sin(a), .2 * k * sin(a / 2));
+    }
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t last = i + 1 == n;
+    const uint32_t a = first + 2 * i, b = last ? first : a + 2;
+
+    shape_tri(m, a, a + 1, b + last, patch);
+    shape_tri(m, a + 1, b + !last, b + last, patch);
+  }
+}
+
+static void a_strip_with_one_side(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_inner_report r;
+  struct vg_mesh m = VG_MESH_INIT;
+  size_t n_tri;
+
+  (void)state;
+  shape_box(&m, 4, 1);
+  n_tri = m.n_tri;
+  add_strip(&m, 24);
+  assert_int_equal(put_back(&m, &r, &err), VG_ERR_GEOMETRY);
+  assert_non_null(strstr(err.text, "patch 40 sheet has only one side"));
+  assert_int_equal(m.n_tri, n_tri + 48);
+  vg_mesh_release(&m);
+}
+
 /* An edge at a small distance from the wall at z = -1. */
 static void sheets_near_walls(void **state)
 {
@@ -345,6 +442,9 @@ int main(void)
     cmocka_unit_test(a_wall_across),
     cmocka_unit_test(a_sheet_that_the_mesh_passes),
     cmocka_unit_test(a_sheet_behind_a_baffle),
+    cmocka_unit_test(fronts_of_backs),
+    cmocka_unit_test(triangles_that_disagree),
+    cmocka_unit_test(a_strip_with_one_side),
     cmocka_unit_test(sheets_near_walls),
     cmocka_unit_test(edges_that_pass),
     cmocka_unit_test(sheets_outside),

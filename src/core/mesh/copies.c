@@ -16,14 +16,21 @@ struct copies {
   size_t n;        /* points that are not the first ones at their places */
 };
 
+static int is_side(const struct vg_patch *p, int32_t side, int32_t is_sheet)
+{
+  return p->inner == side && p->is_sheet == is_sheet;
+}
+
 size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i)
 {
+  const int32_t is_sheet = i < m->n_patch && m->patch[i].is_sheet;
   size_t n = 0, front = 0;
 
   assert(i < m->n_patch);
   if (m->patch[i].inner != VG_INNER_BACK) return i;
-  for (size_t k = 0; k < i; k++) n += m->patch[k].inner == VG_INNER_BACK;
-  while (m->patch[front].inner != VG_INNER_FRONT || n--) front++;
+  for (size_t k = 0; k < i; k++)
+    n += is_side(&m->patch[k], VG_INNER_BACK, is_sheet);
+  while (!is_side(&m->patch[front], VG_INNER_FRONT, is_sheet) || n--) front++;
   assert(front < m->n_patch);
   return front;
 }

@@ -15,7 +15,8 @@ static inline int vg_mesh_has_inner(const struct vg_mesh *m)
 }
 
 /** The front of patch i if this is the back of an inner surface, otherwise i.
- * Backs are in the order of their fronts. O(n_patch). */
+ * Backs of baffles are in the order of their fronts, and so are those of
+ * sheets. O(n_patch). */
 size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i);
 
 /** first[p]: for a point p with on[p], the first such point with the same

@@ -19,6 +19,13 @@ static inline int vg_mesh_has_sheets(const struct vg_mesh *m)
   return 0;
 }
 
+/** Is p the back of a sheet, which exists only until the mesh is complete?
+ * Lists of patches omit it, and no setting refers to it. */
+static inline int vg_patch_is_sheet_back(const struct vg_patch *p)
+{
+  return p->is_sheet && p->inner == VG_INNER_BACK;
+}
+
 /** Move the triangles of the patches with is_sheet from the boundary m to
  * sheet_tri: those of VG_INNER_FRONT, in their order. Those of VG_INNER_BACK
  * and the patches are removed; the other patches keep their order.

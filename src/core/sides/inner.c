@@ -131,6 +131,7 @@ static vg_status make(struct vg_inner_work *s, const uint32_t *back,
   size_t n_cut;
   vg_status st;
 
+  VG_TRY(vg_inner_orient(s, err));
   VG_TRY(build(s, err));
   VG_TRY(vg_inner_check(s, err));
   VG_TRY(vg_inner_near(s, err));

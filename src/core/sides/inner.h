@@ -29,17 +29,23 @@ struct vg_inner_report {
   size_t n_point;  /* points that were added as copies */
   size_t n_sealed; /* regions of the fluid that the sheets separate from the
                       others */
-  size_t n_near;   /* pairs of triangles of a sheet and a surface that have no
-                      common point, and a gap below 1e-3 of their edges */
-  double gap;      /* the narrowest one: narrowest as a share of edges */
-  double at[3];    /* near it */
+  size_t n_turned; /* triangles of the sheets that were turned, so that those of
+                      each piece agree */
+  double turned_at[3]; /* in the first one */
+  size_t n_near; /* pairs of triangles of a sheet and a surface that have no
+                    common point, and a gap below 1e-3 of their edges */
+  double gap;    /* the narrowest one: narrowest as a share of edges */
+  double at[3];  /* near it */
 };
 
 /** Double the sheets of a boundary.
  *
  * @param m         triangles into the fluid, closed without the sheets, whose
- *                  triangles occur once, of any orientation. Points with the
- *                  same coordinates are one point. No two triangles intersect.
+ *                  triangles occur once, of any orientation: each piece of a
+ *                  patch is oriented like its first triangle, where a piece is
+ *                  connected through edges of two of its triangles. Points with
+ *                  the same coordinates are one point. No two triangles
+ *                  intersect.
  *                  Untouched on failure
  * @param is_inner  [m->n_patch] 1: the patch is a sheet
  * @param back      [m->n_patch] patch of the triangles of the other side, which
@@ -47,10 +53,10 @@ struct vg_inner_report {
  *                  the same
  *
  * Copies of points follow the other points. VG_ERR_GEOMETRY, with the place, if
- * a sheet is not in the fluid, touches a surface in a single point, or nearly
- * touches it: a gap below 1e-6 of the edges is due to rounding.
- * VG_ERR_MEMORY. O(n log n), plus O(n) for each sheet that is connected with no
- * other surface. */
+ * a sheet has only one side, is not in the fluid, touches a surface in a single
+ * point, or nearly touches it: a gap below 1e-6 of the edges is due to
+ * rounding. VG_ERR_MEMORY. O(n log n), plus O(n) for each sheet that is
+ * connected with no other surface. */
 vg_status vg_inner_double(struct vg_mesh *m, const uint8_t *is_inner,
                           const uint32_t *back, struct vg_inner_report *report,
                           struct vg_error *err);

@@ -28,6 +28,12 @@ static inline int vg_is_passed(const struct vg_inner_work *s, size_t tri)
   return s->m->patch[s->m->tri_patch[tri]].is_sheet && vg_is_sheet(s, tri);
 }
 
+/** Orient each piece of a patch whose triangles are connected through edges of
+ * exactly two of them like its first triangle. Turned triangles go to
+ * s->report. VG_ERR_GEOMETRY, with the place, for a piece with only one side;
+ * s->m is then unchanged. s->sides is not used. O(n log n). (inner_orient.c) */
+vg_status vg_inner_orient(const struct vg_inner_work *s, struct vg_error *err);
+
 /** VG_ERR_GEOMETRY if a sheet is not in the fluid or touches a surface in a
  * point. Sealed regions go to s->report. (inner_check.c) */
 vg_status vg_inner_check(const struct vg_inner_work *s, struct vg_error *err);

@@ -79,6 +79,8 @@ static void release(struct vg_slide_work *w)
   free(w->x);
   free(w->local);
   free(w->copy_of);
+  free(w->held);
+  free(w->held_edge);
   free(w->first);
   free(w->half);
   free(w->part);
@@ -121,7 +123,8 @@ static vg_status prepare(struct vg_slide_work *w)
   for (size_t i = 0; i < m->n_patch; i++) w->slide_of[i] = VG_NO_INDEX;
   for (size_t i = 0; i < w->n_slide; i++)
     w->slide_of[w->slide[i].patch] = (uint32_t)i;
-  if (vg_mesh_inner_points(m, &w->copy_of, w->err)) return VG_ERR_MEMORY;
+  if (vg_mesh_inner_points(m, &w->copy_of, w->err) || vg_slide_hold(w))
+    return VG_ERR_MEMORY;
   return vg_slide_parts(w);
 }
 

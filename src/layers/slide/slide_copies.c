@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Copies of points on the boundary of a remeshed slide patch. An inner surface
- * that ends on the patch, and whose columns have no levels there, is a slit in
- * it: both sides have copies of the same points. The region is remeshed with
- * one point for all copies, and each new triangle then gets the copy of its
- * side:
+/* Inner surfaces that end on a remeshed slide patch, and whose columns have no
+ * levels there, are slits in it. If the mesh continues through the surface,
+ * both sides of the slit have the same points. Otherwise they have copies of
+ * them: the region is remeshed with one point for all copies, and each new
+ * triangle then gets the copy of its side:
  *
  *        \ | /             edges of the boundary run along both sides of the
  *     ----a-b-c            slit; the triangles from one of them counter-
@@ -16,6 +16,46 @@
 #include "base/memory.h"
 #include "core/mesh/edges.h"
 #include "layers/slide/slide_parts.h"
+
+static int compare_key(const void *a, const void *b)
+{
+  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+
+  return (p > q) - (p < q);
+}
+
+vg_status vg_slide_hold(struct vg_slide_work *w)
+{
+  const struct vg_mesh *m = w->m;
+  size_t n = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    n += 3 * (size_t)m->patch[m->tri_patch[t]].is_sheet;
+  if (!n) return VG_OK;
+  w->held = vg_calloc(m->n_point, 1);
+  w->held_edge = vg_alloc(n, sizeof *w->held_edge);
+  if (!w->held || !w->held_edge) return vg_fail_memory(w->err, "the sheets");
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && m->patch[m->tri_patch[t]].is_sheet; k++) {
+      const uint32_t a = m->tri[t][k], b = m->tri[t][k < 2 ? k + 1 : 0];
+
+      w->held[a] = 1;
+      w->held_edge[w->n_held++] = vg_slide_key(a, b);
+    }
+  qsort(w->held_edge, n, sizeof *w->held_edge, compare_key);
+  return VG_OK;
+}
+
+int vg_slide_is_held(const struct vg_slide_work *w, uint32_t a, uint32_t b)
+{
+  const uint32_t n = (uint32_t)w->m->n_point;
+  uint64_t key;
+
+  if (!w->held || a >= n || b >= n || !w->held[a] || !w->held[b]) return 0;
+  key = vg_slide_key(a, b);
+  return bsearch(&key, w->held_edge, w->n_held, sizeof key, compare_key) !=
+         NULL;
+}
 
 /* New triangles by the first points of their half-edges. */
 struct turns {

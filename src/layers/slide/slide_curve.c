@@ -69,13 +69,14 @@ static int is_corner(const struct vg_mesh *m, const uint32_t v[2], uint32_t r)
 }
 
 /* The only edge that continues the chain from its last point; VG_NO_INDEX at an
- * end. */
+ * end. Points of sheets remain. */
 static uint32_t next_vertex(const struct vg_slide_work *w,
                             const struct chain *c)
 {
   const uint32_t q = c->v[c->n - 1];
   uint32_t next = VG_NO_INDEX;
 
+  if (w->held && w->held[q]) return VG_NO_INDEX;
   for (uint32_t i = w->first[q]; i < w->first[q + 1]; i++) {
     const uint32_t r = head(w, w->half[i]);
 

@@ -32,8 +32,8 @@ static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
   return VG_OK;
 }
 
-/* Half-edges of the part without a twin in it, except those replaced by columns
- * or curves. */
+/* Half-edges of the part without a twin in it, or on an edge of a sheet, except
+ * those replaced by columns or curves. */
 static vg_status former_edges(struct vg_slide_work *w, size_t s,
                               const uint64_t *border, size_t n_border,
                               struct vg_slide_loops *l)
@@ -44,7 +44,9 @@ static vg_status former_edges(struct vg_slide_work *w, size_t s,
       const uint32_t a = v[k], b = v[k < 2 ? k + 1 : 0];
       const uint32_t twin = vg_slide_twin(w, a, b);
 
-      if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s) continue;
+      if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s &&
+          !vg_slide_is_held(w, a, b))
+        continue;
       if (has_key(border, n_border, (uint64_t)b << 32 | a) ||
           has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
         continue;
@@ -217,7 +219,8 @@ static int visit_edge(void *user, uint32_t j)
   }
   if (v[0] == v[2] && v[1] == v[3]) is_bad = 1;
   else if (v[0] == v[3] && v[1] == v[2])
-    is_bad = e[0] == f[1] && e[1] == f[0]; /* Otherwise a slit. */
+    is_bad = e[0] == f[1] && e[1] == f[0] && /* Otherwise a slit. */
+             !vg_slide_is_held(x->w, e[0], e[1]);
   else if (v[0] == v[2]) is_bad = overlap(at[0], at[1], at[3]);
   else if (v[0] == v[3]) is_bad = overlap(at[0], at[1], at[2]);
   else if (v[1] == v[2]) is_bad = overlap(at[1], at[0], at[3]);

@@ -46,6 +46,10 @@ struct vg_slide_work {
                         VG_NO_INDEX between uses. */
   uint32_t *copy_of; /* [m->n_point] first copy of each point of an inner
                         surface; NULL: no point has a copy. */
+  uint8_t *held;     /* [m->n_point] 1: a point of a sheet, through which the
+                        mesh continues; NULL: no patch is such a sheet. */
+  size_t n_held;
+  uint64_t *held_edge; /* [n_held] keys of the edges of sheets, sorted. */
   /* Half-edges 3 * triangle + corner of slide patches, sorted by first
    * point. */
   uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]]. */
@@ -178,6 +182,12 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
                          const double (*p)[2], size_t *n_bad);
 
 /* slide_copies.c ----------------------------------------------------------*/
+
+/** Finds points and edges of the sheets through which the mesh continues. */
+vg_status vg_slide_hold(struct vg_slide_work *w);
+
+/** Is a - b an edge of such a sheet? */
+int vg_slide_is_held(const struct vg_slide_work *w, uint32_t a, uint32_t b);
 
 /** Replaces first copies in new triangles of a region by those of the sides on
  * which the triangles are.

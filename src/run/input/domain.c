@@ -297,6 +297,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   }
   if (!works.any && !works.internal && !works.external) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
+    if (vg_boundary_suggest_inner(b, remedy, sizeof remedy)) *half = 0;
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: the surface is open: %zu rim%s (%s). Caps on the rims "
                  "(--close-holes) would intersect or overlap the surface%s%s",

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "core/mesh/edges.h"
 #include "core/sides/inner.h"
 #include "run/input/shape_parts.h"
@@ -245,6 +246,8 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   const struct vg_mesh *m = &b->surface;
   const struct vg_surface_report *r = &b->check;
   uint8_t *on = vg_calloc(m->n_patch, 1), *is_sheet = vg_calloc(m->n_tri, 1);
+  const struct vg_settings *s = &b->read->settings;
+  const int has_list = *s->baffles || *s->sheets;
   char list[48] = "";
 
   for (size_t i = 0; on && i < r->n_defect; i++)
@@ -258,11 +261,12 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   free(on);
   free(is_sheet);
   if (*list)
-    snprintf(
-      text, size,
-      "; if fluid is on both sides of its open sheets, give --baffles %s (or "
-      "--sheets)",
-      list);
+    snprintf(text, size,
+             has_list ? "; if fluid is on both sides of its open sheets, add "
+                        "%s to --baffles or --sheets"
+                      : "; if fluid is on both sides of its open sheets, give "
+                        "--baffles %s (or --sheets)",
+             list);
   return *list != 0;
 }
 
@@ -387,21 +391,13 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
   uint8_t *is_inner = vg_calloc(n_patch, 1);
   uint32_t *back = vg_calloc(n_patch, sizeof *back);
   struct vg_inner_report r;
-  uint32_t next[2] = { 0, 0 }; /* of baffles and of sheets */
   vg_status st = is_inner && back ? VG_OK : vg_fail_memory(err, "the patches");
 
   VG_TRY(st);
-  /* Back sides of each kind were added in the order of the patches. */
-  for (uint32_t i = 0; i < n_patch; i++) {
-    const int32_t is_sheet = all->patch[i].is_sheet;
-    uint32_t *k = &next[is_sheet];
-
+  for (size_t i = 0; i < n_patch; i++) {
     is_inner[i] = all->patch[i].inner == VG_INNER_FRONT;
-    if (!is_inner[i]) continue;
-    while (all->patch[*k].inner != VG_INNER_BACK ||
-           all->patch[*k].is_sheet != is_sheet)
-      ++*k;
-    back[i] = (*k)++;
+    if (all->patch[i].inner == VG_INNER_BACK)
+      back[vg_mesh_front_patch(all, i)] = (uint32_t)i;
   }
   VG_TRY(vg_inner_double(all, is_inner, back, &r, err));
   VG_TRY(extend_check(&b->check, b->surface.n_tri, all->n_tri, err));
@@ -410,6 +406,12 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
           "inner surfaces: %zu triangles with fluid on both sides; %zu copies "
           "of points were added",
           r.n_tri, r.n_point);
+  if (r.n_turned)
+    vg_note(b->notes,
+            "%zu triangles of inner surfaces were turned, the first one near "
+            "(%g, %g, %g), so that each connected piece of a patch is oriented "
+            "like its first triangle",
+            r.n_turned, r.turned_at[0], r.turned_at[1], r.turned_at[2]);
   if (r.n_cut)
     vg_note(b->notes,
             "%zu edges of inner surfaces were cut, because triangles or edges "

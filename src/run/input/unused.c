@@ -77,7 +77,7 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   const struct vg_boundary *b = &p->boundary;
   uint8_t *given = vg_settings_given(&p->asked);
   unsigned missing = judged & ~in_use(p, layers_on);
-  size_t n_hard = 0;
+  size_t n_hard = 0, n_layer = 0;
 
   if (!given) {
     vg_print_lose();
@@ -101,6 +101,13 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
             "setting that has no effect because %s: hard, in %zu rows of the "
             "table patches",
             reason[VG_USE_REMESH], n_hard);
+  for (size_t i = 0; i < s->n_layer; i++)
+    n_layer += s->layer_row[i].grow != VG_ANSWER_NO;
+  if (n_layer && missing >> VG_USE_LAYERS & 1)
+    vg_note(&p->notes,
+            "table that has no effect because %s: layers (its patches grow "
+            "layers if walls, or the column grow, requests them)",
+            reason[VG_USE_LAYERS]);
   if (s->n_surface && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes, "table that has no effect because %s: surface",
             reason[VG_USE_REMESH]);

@@ -156,7 +156,7 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   *text = 0;
   if (b->remedy != VG_REMEDY_NOW) b->remedy = VG_REMEDY_ASKED;
   if (!b->model.cad && !b->read->settings.wrap && !b->read->settings.weld &&
-      !vg_boundary_wants_inner(b) && vg_boundary_suggest_inner(b, text, size))
+      vg_boundary_suggest_inner(b, text, size))
     return;
   if (b->remedy != VG_REMEDY_NOW || !vg_wrap_is_available(NULL, 0) ||
       b->read->settings.wrap > 0 || vg_boundary_wants_inner(b) ||

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/sheets.h"
 #include "core/surface/surface_quality.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
@@ -21,6 +22,15 @@ static void count_line(FILE *to, const char *what, size_t n)
   char text[32];
 
   if (n) fprintf(to, "  %-24s %15s\n", what, vg_text_count(n, text));
+}
+
+static size_t n_shown(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    n += !vg_patch_is_sheet_back(&m->patch[i]);
+  return n;
 }
 
 void vg_report_size_text(FILE *to, const struct vg_mesh *m)
@@ -41,7 +51,7 @@ void vg_report_counts_text(FILE *to, const struct vg_mesh *m,
   count_line(to, "pyramids", m->n_pyr);
   count_line(to, "prisms", m->n_pri);
   count_line(to, "hexahedra", m->n_hex);
-  count_line(to, "patches", m->n_patch);
+  count_line(to, "patches", n_shown(m));
   fprintf(to, "  %-24s %g %g %g to %g %g %g\n", "bounding box", lo[0], lo[1],
           lo[2], hi[0], hi[1], hi[2]);
 }
@@ -80,7 +90,7 @@ json_t *vg_report_counts_json(const struct vg_mesh *m, const double lo[3],
                    "tetrahedra", (json_int_t)m->n_tet, "pyramids",
                    (json_int_t)m->n_pyr, "prisms", (json_int_t)m->n_pri,
                    "hexahedra", (json_int_t)m->n_hex, "patches",
-                   (json_int_t)m->n_patch, "lower", lo[0], lo[1], lo[2],
+                   (json_int_t)n_shown(m), "lower", lo[0], lo[1], lo[2],
                    "upper", hi[0], hi[1], hi[2]);
 }
 
@@ -141,11 +151,14 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
 {
   struct extent *e = patch_extents(m);
   char count[32], bc[16], fun3d[16], name[VG_NAME_MAX];
+  size_t shown = 0;
 
   if (!e) return vg_fail_memory(err, "a report");
   fprintf(to, "  %8s %13s %6s %6s %10s  %s\n", "patch", "faces", "USM3D",
           "FUN3D", "area", "name; bounding box");
-  for (size_t i = 0; i < m->n_patch && i < VG_SHOWN_PATCHES; i++) {
+  for (size_t i = 0; i < m->n_patch && shown < VG_SHOWN_PATCHES; i++) {
+    if (vg_patch_is_sheet_back(&m->patch[i])) continue;
+    shown++;
     code_text(m->patch[i].bc, bc, sizeof bc);
     code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
     fprintf(to, "  %8d %13s %6s %6s %10.4g  %s", (int)m->patch[i].id,
@@ -156,8 +169,8 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
               e[i].lo[2], e[i].hi[0], e[i].hi[1], e[i].hi[2]);
     fputc('\n', to);
   }
-  if (m->n_patch > VG_SHOWN_PATCHES)
-    fprintf(to, "  ... and %zu more patches\n", m->n_patch - VG_SHOWN_PATCHES);
+  if (n_shown(m) > shown)
+    fprintf(to, "  ... and %zu more patches\n", n_shown(m) - shown);
   free(e);
   return VG_OK;
 }
@@ -173,12 +186,14 @@ json_t *vg_report_patches_json(const struct vg_mesh *m)
   json_t *list = e ? json_array() : NULL;
 
   for (size_t i = 0; list && i < m->n_patch; i++) {
-    json_t *one = json_pack("{s:i s:o s:o s:o s:I s:f}", "id",
-                            (int)m->patch[i].id, "name",
-                            vg_text_json(m->patch[i].name), "usm3d",
-                            code_json(m->patch[i].bc), "fun3d",
-                            code_json(m->patch[i].bc_fun3d), "faces",
-                            (json_int_t)e[i].n, "area", e[i].area);
+    json_t *one;
+
+    if (vg_patch_is_sheet_back(&m->patch[i])) continue;
+    one = json_pack("{s:i s:o s:o s:o s:I s:f}", "id", (int)m->patch[i].id,
+                    "name", vg_text_json(m->patch[i].name), "usm3d",
+                    code_json(m->patch[i].bc), "fun3d",
+                    code_json(m->patch[i].bc_fun3d), "faces",
+                    (json_int_t)e[i].n, "area", e[i].area);
 
     if (e[i].n) {
       json_object_set_new(one, "lower",

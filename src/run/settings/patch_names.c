@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/sheets.h"
 #include "io/stream/stream.h"
 #include "run/settings/names.h"
 
@@ -120,7 +121,7 @@ int vg_patch_name_matches(const char *pattern, const char *name)
 void vg_patch_list_text(const struct vg_mesh *m, size_t n, char *text,
                         size_t size)
 {
-  size_t at = 0;
+  size_t at = 0, shown = 0;
 
   assert(n <= m->n_patch && text && size > 0);
   *text = 0;
@@ -128,20 +129,23 @@ void vg_patch_list_text(const struct vg_mesh *m, size_t n, char *text,
     const struct vg_patch *p = &m->patch[i];
     char bc[24] = "no condition";
 
-    if (i == SHOWN_PATCHES || at + 60 >= size) {
+    if (vg_patch_is_sheet_back(p)) continue;
+    if (shown == SHOWN_PATCHES || at + 60 >= size) {
       snprintf(text + at, size - at, ", ...");
       return;
     }
     if (p->bc != VG_BC_NONE) snprintf(bc, sizeof bc, "bc %d", (int)p->bc);
     at += (size_t)snprintf(text + at, size - at, "%s%d%s%.20s (%s)",
-                           i ? ", " : "", (int)p->id, *p->name ? " " : "",
+                           shown++ ? ", " : "", (int)p->id, *p->name ? " " : "",
                            p->name, bc);
   }
 }
 
 static const char *name_of(const void *mesh, size_t i)
 {
-  return ((const struct vg_mesh *)mesh)->patch[i].name;
+  const struct vg_patch *p = &((const struct vg_mesh *)mesh)->patch[i];
+
+  return vg_patch_is_sheet_back(p) ? "" : p->name;
 }
 
 static vg_status no_name(const char *what, const char *name,
@@ -185,8 +189,9 @@ static vg_status mark(const char *what, const struct vg_patch_item *item,
   for (size_t i = 0; i < n; i++) {
     const struct vg_patch *p = &m->patch[i];
 
-    if (*item->name ? !vg_patch_name_matches(item->name, p->name)
-                    : p->id < item->from || p->id > item->to)
+    if (vg_patch_is_sheet_back(p) ||
+        (*item->name ? !vg_patch_name_matches(item->name, p->name)
+                     : p->id < item->from || p->id > item->to))
       continue;
     on[i] = 1;
     found = 1;
@@ -263,12 +268,20 @@ static size_t *each_unset(size_t n)
   return of;
 }
 
+static int has_baffle_row(const struct vg_settings *s)
+{
+  for (size_t i = 0; i < s->n_patch; i++)
+    if (s->patch[i].role == VG_PATCH_BAFFLE) return 1;
+  return 0;
+}
+
 /* Whether a name of the table layers may be that of the back of an inner
  * surface, which the surface does not have yet. */
 static int may_be_back(enum vg_table_kind kind, const struct vg_settings *s,
                        const char *name, const struct vg_mesh *m)
 {
-  if (kind != VG_TABLE_LAYERS || !*s->baffles || !*name) return 0;
+  if (kind != VG_TABLE_LAYERS || !*name) return 0;
+  if (!*s->baffles && !has_baffle_row(s)) return 0;
   for (size_t k = 0; k < m->n_patch; k++)
     if (m->patch[k].inner || vg_patch_name_matches(name, m->patch[k].name))
       return 0;

@@ -32,6 +32,19 @@ vanguard mesh both.stl --deck named/both.resolved.deck --quiet --out again \
 exits 0
 same named/both.b8.ugrid again/both.b8.ugrid
 
+# Triangles of a patch that disagree are turned.
+awk '/^solid/ { in_fin = /fin/ } /facet normal/ { n++; k = 0 }
+  /vertex/ && in_fin && n % 2 { line[k++] = $0
+    if (k == 3) print line[0] "\n" line[2] "\n" line[1]
+    next } { print }' fin.stl >turned.stl
+valid turned --baffles fin
+vanguard check turned.stl --flow internal --baffles fin
+exits 0
+says out "16 triangles of inner surfaces were turned, the first one near (0.5, "
+vanguard check fin.stl --flow internal --baffles fin
+exits 0
+lacks out "turned"
+
 # In an external flow: a disk behind a box, with layers on the box.
 duct disk "disk 4 4  1.5 0.25 0.25  0 0.5 0  0 0 0.5"
 vanguard mesh disk.stl --flow external --baffles disk --walls 'w*' \
@@ -76,9 +89,6 @@ for way in $ways; do
 done
 
 # --- layers ------------------------------------------------------------------
-
-# full FILE PATCH: share of its faces with all layers, in percent.
-full() { awk -v patch="$2" '$2 == patch && NF > 6 { print $4; exit }' "$1"; }
 
 # On walls only, where they touch a sheet or not; on a sheet that stands on
 # walls; where sheets meet; on everything. All faces of the tall sheet but those
@@ -139,6 +149,38 @@ exits 0
   fail "layers of one side"
 vanguard check one/tall.b8.ugrid
 exits 0
+
+# A role of the table patches does the same as the list, and its deck as well.
+cat >list.deck <<'END'
+sheet
+
+baffles  walls
+tall     tall
+
+layers
+id        first  count
+tall      0.004  6
+tall_back 0.008  3
+END
+sed '/^baffles/,/^tall/d' list.deck >role.deck
+printf '\npatches\nid role\ntall baffle\n\nwalls\ntall\n' >>role.deck
+for by in list role; do
+  vanguard mesh tall.stl --deck $by.deck --flow internal --hmax 0.12 \
+    --write b8.ugrid --out $by
+  exits 0
+  [ "$(full out tall)" = 83.33 ] && [ "$(full out tall_back)" = 83.33 ] ||
+    fail "layers by $by.deck"
+done
+same list/tall.b8.ugrid role/tall.b8.ugrid
+vanguard mesh tall.stl --deck role/tall.resolved.deck --quiet --write b8.ugrid \
+  --out role_again
+exits 0
+same role/tall.b8.ugrid role_again/tall.b8.ugrid
+sed -i '/^walls/,$d' role.deck
+vanguard mesh tall.stl --deck role.deck --flow internal --hmax 0.12 \
+  --write b8.ugrid --out none
+exits 0
+says out "table that has no effect because no layers grow: layers"
 
 # Same bytes with threads, in any decomposition.
 for way in $ways; do
@@ -223,3 +265,13 @@ says err "both sides of its open sheets, give --baffles 7"
 vanguard check open.stl
 exits 1
 lacks err "baffles"
+
+# One of two free sheets is not named.
+duct two "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5" \
+  "fin 4 4  0.25 0.25 0.25  0 0.5 0  0 0 0.5"
+vanguard mesh two.stl --flow internal --baffles fin
+exits 1
+says err "both sides of its open sheets, add 7 to --baffles or --sheets"
+lacks err "half"
+valid two --baffles fin,7
+valid two --baffles fin --sheets 7

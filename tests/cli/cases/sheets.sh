@@ -46,6 +46,48 @@ valid both --baffles fin --sheets plate --walls 'w*,fin' --first 0.004 \
 says out "fin_back"
 says out "8            16            16            16      0.125  plate"
 
+# A sheet that is numbered before the baffle changes nothing for its layers.
+duct order "disk 4 4  0.25 0.25 0.25  0 0.5 0  0 0 0.5" \
+  "fin 4 4  0.5 0.25 0  0 0.5 0  0 0 0.5"
+valid order --baffles fin --sheets disk --first 0.004
+says out "7            32            32            32       0.25  disk"
+vanguard mesh order.stl --flow internal --baffles fin --sheets disk --walls fin \
+  --first 0.004 --layer-count 5 --write b8.ugrid --out order
+exits 0
+[ -n "$(full out fin)" ] && [ -n "$(full out fin_back)" ] ||
+  fail "layers of a baffle after a sheet"
+lacks out "disk_back"
+vanguard check order.stl --flow internal --baffles fin --sheets disk
+exits 0
+lacks out "disk_back"
+vanguard check order.stl --flow internal --baffles fin --sheets disk --json
+exits 0
+lacks out "disk_back"
+vanguard mesh order.stl --flow internal --baffles fin --sheets disk \
+  --walls disk_back --first 0.004
+exits 1
+says err "walls: no patch of the surface is named 'disk_back'"
+says err "8 fin (no condition), 9 fin_back (no condition)"
+
+# A sheet ends in a side of the duct in which columns of the floor slide; near
+# the floor they stay below it. The floor has all layers where there is room.
+duct side "disk 4 4  0.5 0 0.25  0 0.5 0  0 0 0.5"
+duct low "disk 4 8  0.25 0 0.125  0.5 0 0  0 1 0"
+for cells in tets mixed; do
+  valid side --sheets disk --walls w1 --first 0.004 --cells $cells
+  says out "7            32            32            32       0.25  disk"
+  valid low --sheets disk --walls w1 --first 0.02 --cells $cells
+  says out "7            64            64            64        0.5  disk"
+done
+for threads in 1 3; do
+  vanguard mesh side.stl --flow internal --sheets disk --walls w1 \
+    --first 0.004 --hmax 0.12 --threads $threads --write b8.ugrid \
+    --out side$threads
+  exits 0
+  [ "$(full out w1)" = 100.00 ] || fail "layers next to a sheet"
+done
+same side1/side.b8.ugrid side3/side.b8.ugrid
+
 # The example: a disk in front of a sphere.
 vanguard demo disk --cells 20000 --out demo
 exits 0
