@@ -250,7 +250,10 @@ static void names_go_before_numbers_without_meaning(void **state)
                  (int32_t[]){ 1, 4, 2, 3 }, 0);
   refuse_by_name(plain, "1 4 4 0 0 wall\n2 1 1 0 0 plane\n",
                  "patch 2 is 'plane' here but 'symm' in the mesh");
-  refuse_by_name(plain, "1 1 1 0 0 a\n2 3 3 0 0 b\n", "remove or rename");
+  refuse_by_name(plain, "1 1 1 0 0 a\n2 3 3 0 0 far\n", "remove or rename");
+  /* No name of the mesh: the patches get other names. */
+  expect_by_name(plain, "1 1 1 0 0 a\n2 3 3 0 0 b\n",
+                 (int32_t[]){ 1, 3, none, none }, 2);
   refuse_by_name(plain, "5 4 4 0 0 wall\n6 3 3 0 0 wall\n",
                  "lines 5 and 6, with codes 4 and 3, both have the name");
 }

@@ -434,6 +434,7 @@ static vg_status read_input(struct conversion *c, struct vg_error *err)
     vg_note(&c->notes,
             "%zu patches have no entry in the .mapbc, first patch %d",
             c->info.match.n_missing, c->info.match.first_missing);
+  if (c->info.match.n_renamed) vg_note_renamed(&c->notes, &c->info.match);
 done:
   return st;
 }

@@ -497,6 +497,14 @@ static int is_of_patch(const struct names *s, size_t entry)
   return 0;
 }
 
+static int has_common_name(const struct names *s)
+{
+  for (size_t k = 0; k < s->n_entry; k++)
+    if (find_name(s->patch, s->n_patch, s->entry[k].name) < s->n_patch)
+      return 1;
+  return 0;
+}
+
 static int is_same_condition(const struct vg_patch *a, const struct vg_patch *b)
 {
   return a->bc == b->bc && a->bc_fun3d == b->bc_fun3d && a->family == b->family;
@@ -561,11 +569,24 @@ static vg_status find_by_name(const char *path, const struct vg_mapbc *b,
   struct names s = { .path = path, .list = list, .n_list = b->n };
   vg_status st = collect_names(b, m, most, &s, err);
 
-  for (size_t i = 0; i < m->n_patch && st >= 0; i++)
-    st = find_named(&s, m->patch + i, &at[i], err);
+  if (st >= 0 && !has_common_name(&s)) find_by_number(b, list, m, at);
+  else
+    for (size_t i = 0; i < m->n_patch && st >= 0; i++)
+      st = find_named(&s, m->patch + i, &at[i], err);
   free(s.entry);
   free(s.patch);
   return st;
+}
+
+/* Does the entry, which has the number of the patch, give it another name? */
+static int is_renamed(const struct vg_patch *entry, const struct vg_patch *p)
+{
+  char a[VG_NAME_MAX], b[VG_NAME_MAX];
+
+  if (entry->id != p->id || !*entry->name || !*p->name) return 0;
+  written_name(entry, a);
+  written_name(p, b);
+  return strcmp(a, b) != 0;
 }
 
 /* most: 0 to match by number, otherwise as in vg_mapbc_apply_names. */
@@ -573,7 +594,7 @@ static vg_status apply(const char *path, const struct vg_mapbc *b, size_t most,
                        struct vg_mesh *m, struct vg_mapbc_match *match,
                        struct vg_error *err)
 {
-  struct vg_mapbc_match found = { 0, 0, 0, 0 };
+  struct vg_mapbc_match found = { 0 };
   const struct vg_patch **list = sorted(b);
   unsigned char *used = vg_calloc(b->n, 1);
   int *axis = vg_alloc(m->n_patch, sizeof *axis);
@@ -592,6 +613,8 @@ static vg_status apply(const char *path, const struct vg_mapbc *b, size_t most,
       continue;
     }
     used[at[i]] = 1;
+    if (most && is_renamed(list[at[i]], m->patch + i) && !found.n_renamed++)
+      found.first_renamed = m->patch[i].id;
     give(b, list[at[i]], axis[i], m->patch + i);
   }
   count_unused(b, list, used, &found);

@@ -29,6 +29,9 @@ struct vg_mapbc_match {
   int32_t first_missing; /* id of the first such patch */
   size_t n_unused;       /* entries without a patch in the mesh */
   int32_t first_unused;
+  size_t n_renamed; /* patches that got another name by their number, as none of
+                       the names in the file is one of the mesh */
+  int32_t first_renamed;
 };
 
 /** Read either layout. They are distinguished by their content: FUN3D's starts
@@ -55,7 +58,8 @@ vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
 /** As vg_mapbc_apply, for a mesh whose patches have names, but numbers only by
  * their order. Entries are matched by name: as vg_mapbc_write writes it, or as
  * a word of vg_patch_words. A patch or an entry without a name is matched by
- * number, and so are several entries with the same name.
+ * number, and so are several entries with the same name; and all of them, if
+ * no entry has the name of a patch, so that the file names them anew.
  * @param path  the .mapbc, for messages
  * @param most  maximum length of a word
  * VG_ERR_INPUT, and m is unchanged: the entry with the number of a patch has

@@ -296,13 +296,14 @@ vg_status vg_problem_open(struct vg_problem *p, const char *name,
   return st < 0 ? st : vg_problem_open_deck(p, err);
 }
 
-static void note_unused(struct vg_read *r, const struct vg_mapbc_match *match)
+static void note_match(struct vg_read *r, const struct vg_mapbc_match *match)
 {
   if (match->n_unused)
     vg_note(r->notes,
             "%s lists %zu patches that the surface does not "
             "have (the first is %d)",
             r->files.mapbc, match->n_unused, (int)match->first_unused);
+  if (match->n_renamed) vg_note_renamed(r->notes, match);
 }
 
 static enum vg_flow_side side_of(const char *format)
@@ -318,6 +319,14 @@ void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n)
           "%.*s.mapbc was written by an earlier run of Vanguard and was not "
           "read; --mapbc %.*s.mapbc uses it",
           (int)n, stem, (int)n, stem);
+}
+
+void vg_note_renamed(struct vg_notes *notes, const struct vg_mapbc_match *match)
+{
+  vg_note(notes,
+          "%zu patches have other names in the .mapbc, which was matched by "
+          "number, as it has none of the mesh's names; the first patch is %d",
+          match->n_renamed, (int)match->first_renamed);
 }
 
 /* The .mapbc of an earlier run is not an input and may be overwritten. */
@@ -388,7 +397,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
     vg_note(r->notes, "%s: %zu boundary faces belong to no cell", path,
             info.turned.loose_face);
   if (info.has_own_mapbc) leave_own_mapbc(r);
-  note_unused(r, &info.match);
+  note_match(r, &info.match);
   return VG_OK;
 }
 
@@ -534,7 +543,7 @@ static vg_status apply_conditions(struct vg_read *r, struct vg_error *err)
   if (!*r->files.mapbc) return VG_OK;
   st = vg_mapbc_read(r->files.mapbc, &bc, err);
   if (st >= 0) st = vg_mapbc_apply(&bc, &r->surface, &match, err);
-  if (st >= 0) note_unused(r, &match);
+  if (st >= 0) note_match(r, &match);
 done:
   vg_mapbc_release(&bc);
   return st;

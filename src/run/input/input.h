@@ -189,6 +189,11 @@ void vg_notes_release(struct vg_notes *notes);
  * its first n bytes. */
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
 
+/** Adds the note that a .mapbc has named patches anew. */
+struct vg_mapbc_match;
+void vg_note_renamed(struct vg_notes *notes,
+                     const struct vg_mapbc_match *match);
+
 /** Adds a note for each symmetry plane (USM3D 1) that is nearly normal to an
  * axis but deviates too much to have a code of FUN3D's symmetry (6661 to 6663).
  */

@@ -53,6 +53,7 @@ printf '1\n1 4000 skin\n' >given/octa.mapbc
 vanguard mesh -q -p given/octa --farfield none --report-html no
 exits 0
 says out "no layers grow on 1 viscous wall (patch 1)"
+says out "1 patches have other names in the .mapbc"
 lacks out "earlier run"
 [ "$(cat given/octa.mapbc)" = "$(printf '1\n1 4000 skin')" ] ||
   fail "given/octa.mapbc was overwritten"
