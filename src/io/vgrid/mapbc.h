@@ -59,7 +59,7 @@ vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
  * their order. Entries are matched by name: as vg_mapbc_write writes it, or as
  * a word of vg_patch_words. A patch or an entry without a name is matched by
  * number, and so are several entries with the same name; and all of them, if
- * no entry has the name of a patch, so that the file names them anew.
+ * no entry has the name of a patch, so that the file gives other names.
  * @param path  the .mapbc, for messages
  * @param most  maximum length of a word
  * VG_ERR_INPUT, and m is unchanged: the entry with the number of a patch has

@@ -189,7 +189,7 @@ void vg_notes_release(struct vg_notes *notes);
  * its first n bytes. */
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
 
-/** Adds the note that a .mapbc has named patches anew. */
+/** Adds the note that a .mapbc gives patches other names. */
 struct vg_mapbc_match;
 void vg_note_renamed(struct vg_notes *notes,
                      const struct vg_mapbc_match *match);
