@@ -81,19 +81,19 @@ static const char *metric_suffix(const char *path)
 /* A .sol belongs to the only mesh of its name. */
 static vg_status check_mesh(const struct job *j, struct vg_error *err)
 {
-  struct vg_error none = VG_ERROR_INIT;
-  char *found = NULL;
-  vg_status st = vg_sizes_find_mesh(j->file, &found, &none);
+  char *found[2];
+  vg_status st = vg_sizes_meshes(j->file, found, err);
+  int is_own;
 
-  if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "a path");
-  if (!found && st < 0 && !strstr(none.text, "both")) return VG_OK;
-  if (found && !strcmp(found, j->mesh) && !access(j->file, F_OK)) st = VG_OK;
-  else
+  if (st < 0 || !found[0]) return st;
+  is_own = !found[1] && !strcmp(found[0], j->mesh) && !access(j->file, F_OK);
+  if (!is_own)
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s: the folder has another mesh of this name, %s; give "
                  "another name by --out, or write a .vtu",
-                 j->file, found ? found : "or several");
-  free(found);
+                 j->file, found[0]);
+  free(found[0]);
+  free(found[1]);
   return st;
 }
 

@@ -189,8 +189,9 @@ void vg_notes_release(struct vg_notes *notes);
  * its first n bytes. */
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
 
-/** Adds the note that a .mapbc gives patches other names. */
 struct vg_mapbc_match;
+
+/** Adds the note that a .mapbc gives patches other names. */
 void vg_note_renamed(struct vg_notes *notes,
                      const struct vg_mapbc_match *match);
 

@@ -82,34 +82,46 @@ static vg_status make_samples(const struct vg_mesh *m, const double *h,
   return s->refused ? vg_fail_memory(err, "the sizes of a mesh") : VG_OK;
 }
 
-vg_status vg_sizes_find_mesh(const char *path, char **out, struct vg_error *err)
+vg_status vg_sizes_meshes(const char *path, char *found[2],
+                          struct vg_error *err)
 {
   const char *dot = strrchr(path, '.'), *suffix;
-  char *found = NULL, *name;
-  vg_status st = VG_OK;
+  char *name;
+  int n = 0;
 
-  for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && st >= 0; i++) {
+  found[0] = found[1] = NULL;
+  for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && n < 2; i++) {
     if (asprintf(&name, "%.*s.%s", (int)(dot - path), path, suffix) < 0) {
-      st = vg_fail_memory(err, "a path");
-    } else if (access(name, F_OK)) {
-      free(name);
-    } else if (found) {
-      st = vg_fail(err, VG_ERR_INPUT,
-                   "%s: both %s and %s could be the mesh of these values; keep "
-                   "only one of them next to the file",
-                   path, found, name);
-      free(name);
-    } else {
-      found = name;
+      free(found[0]);
+      found[0] = NULL;
+      return vg_fail_memory(err, "a path");
     }
+    if (access(name, F_OK)) free(name);
+    else found[n++] = name;
   }
-  if (st >= 0 && !found)
+  return VG_OK;
+}
+
+vg_status vg_sizes_find_mesh(const char *path, char **out, struct vg_error *err)
+{
+  const char *dot = strrchr(path, '.');
+  char *found[2];
+  vg_status st = vg_sizes_meshes(path, found, err);
+
+  if (st < 0) return st;
+  if (found[1])
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: both %s and %s could be the mesh of these values; keep "
+                 "only one of them next to the file",
+                 path, found[0], found[1]);
+  else if (!found[0])
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s: the values belong to the points of a mesh, but there is "
                  "no %.*s.mesh, .meshb, .b8.ugrid, ... in the same folder",
                  path, (int)(dot - path), path);
-  if (st < 0) free(found);
-  else *out = found;
+  free(found[1]);
+  if (st < 0) free(found[0]);
+  else *out = found[0];
   return st;
 }
 

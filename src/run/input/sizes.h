@@ -16,6 +16,11 @@
  * points, a value that is not a size, or an existing map. */
 vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err);
 
+/** The files next to STEM.sol that can be its mesh: the first two, to be freed,
+ * or NULL. VG_ERR_MEMORY: both are NULL. */
+vg_status vg_sizes_meshes(const char *path, char *found[2],
+                          struct vg_error *err);
+
 /** The mesh next to STEM.sol: the only file of the stem that can be read.
  * *out: to be freed. VG_ERR_INPUT: no such file, or several. */
 vg_status vg_sizes_find_mesh(const char *path, char **out,

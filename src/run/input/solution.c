@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/stream/csv.h"
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu_read.h"
+#include "io/stream/csv.h"
 #include "run/common/text.h"
 #include "run/input/sizes.h"
 
