@@ -30,6 +30,8 @@ static const struct command {
     "vanguard convert", 0 },
   { "metric", "make the metric of the next mesh from a flow solution",
     vg_cmd_metric, "vanguard metric", 0 },
+  { "adapt", "run cycles of mesh, flow solver and metric", vg_cmd_adapt,
+    "vanguard adapt", 0 },
   { "plan", "forecast cells, memory and time of a run", vg_cmd_plan,
     "vanguard plan", 0 },
   { "sweep", "mesh with various subdomain sizes, ranks and threads; compare",

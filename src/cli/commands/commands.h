@@ -15,6 +15,7 @@ int vg_cmd_serve(int argc, char **argv);
 int vg_cmd_partition(int argc, char **argv);
 int vg_cmd_convert(int argc, char **argv);
 int vg_cmd_metric(int argc, char **argv);
+int vg_cmd_adapt(int argc, char **argv);
 int vg_cmd_plan(int argc, char **argv);
 int vg_cmd_deck(int argc, char **argv);
 int vg_cmd_demo(int argc, char **argv);

@@ -2,12 +2,17 @@
 #define _GNU_SOURCE
 #include "cli/common/process.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "run/common/progress.h"
 
 void vg_words_release(struct vg_words *w)
 {
@@ -80,6 +85,69 @@ vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
     launcher += len;
   }
   return st;
+}
+
+/* Execute the command in the child process; never returns. */
+static void become(char **word, const char *dir, int log, const sigset_t *mask)
+{
+  sigprocmask(SIG_SETMASK, mask, NULL);
+  signal(SIGINT, SIG_DFL);
+  signal(SIGTERM, SIG_DFL);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  if (dir && chdir(dir)) {
+    dprintf(STDERR_FILENO, "cannot enter %s: %s\n", dir, strerror(errno));
+    _exit(127);
+  }
+  execvp(word[0], word);
+  dprintf(STDERR_FILENO, "cannot start %s: %s\n", word[0], strerror(errno));
+  _exit(127);
+}
+
+/* Wait until the child ends. A SIGTERM is forwarded to the child, which does
+ * not receive it otherwise (Ctrl-C reaches it directly). */
+static int wait_for(pid_t child, const sigset_t *chld)
+{
+  const struct timespec pause = { 0, 200000000 };
+  int status = 0, signalled = 0;
+
+  for (;;) {
+    pid_t got = waitpid(child, &status, WNOHANG);
+
+    if (got == child) break;
+    if (got < 0 && errno != EINTR) return 127;
+    if (vg_display_interrupted() && !signalled++) kill(child, SIGTERM);
+    sigtimedwait(chld, NULL, &pause);
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+vg_status vg_words_run(const struct vg_words *w, const char *dir,
+                       const char *log, int *status, double *wall,
+                       struct vg_error *err)
+{
+  const int to = open(log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const double start = vg_display_now();
+  sigset_t chld, before;
+  pid_t child;
+
+  if (to < 0)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", log,
+                   strerror(errno));
+  sigemptyset(&chld);
+  sigaddset(&chld, SIGCHLD);
+  sigprocmask(SIG_BLOCK, &chld, &before);
+  fflush(NULL);
+  child = fork();
+  if (child == 0) become(w->word, dir, to, &before);
+  if (child > 0) *status = wait_for(child, &chld);
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  close(to);
+  if (child < 0)
+    return vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
+                   strerror(errno));
+  *wall = vg_display_now() - start;
+  return VG_OK;
 }
 
 char *vg_own_path(void)

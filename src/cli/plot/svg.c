@@ -218,21 +218,40 @@ double vg_svg_key(struct vg_svg *s, double x, double y, const char *fill,
 
 /* --- axes ---------------------------------------------------------------- */
 
+/* The least of 1, 2, 5, 10, ... that is not below range / n. */
+static double step_of(double range, int n)
+{
+  double step = 1, wanted;
+
+  if (!(range > 1e-9)) range = 1e-9;
+  if (range > 1e30) range = 1e30;
+  wanted = range / n;
+  while (step > wanted) step /= 10;
+  while (step * 10 <= wanted) step *= 10;
+  return wanted <= step     ? step
+       : wanted <= 2 * step ? 2 * step
+       : wanted <= 5 * step ? 5 * step
+                            : 10 * step;
+}
+
 struct vg_axis vg_axis_linear(double most, int n, double from, double to)
 {
-  struct vg_axis a = { 0, 1, 1, from, to, 0 };
-  double step = 1, wanted;
+  struct vg_axis a = { 0, 1, step_of(most, n), from, to, 0 };
 
   if (!(most > 1e-9)) most = 1e-9;
   if (most > 1e30) most = 1e30;
-  wanted = most / n;
-  while (step > wanted) step /= 10;
-  while (step * 10 <= wanted) step *= 10;
-  a.step = wanted <= step     ? step
-         : wanted <= 2 * step ? 2 * step
-         : wanted <= 5 * step ? 5 * step
-                              : 10 * step;
   a.hi = a.step * ceil(most / a.step * (1 - 1e-9));
+  return a;
+}
+
+struct vg_axis vg_axis_range(double least, double most, int n, double from,
+                             double to)
+{
+  struct vg_axis a = { 0, 1, step_of(most - least, n), from, to, 0 };
+
+  a.lo = a.step * floor(fmax(least, -1e30) / a.step);
+  a.hi = a.step * ceil(fmin(most, 1e30) / a.step);
+  if (a.hi <= a.lo) a.hi = a.lo + a.step;
   return a;
 }
 
@@ -255,7 +274,12 @@ double vg_axis_at(const struct vg_axis *a, double v)
 
 static double next_tick(const struct vg_axis *a, double v, int i)
 {
-  return a->is_log ? v * 2 : a->step * (i + 1);
+  return a->is_log ? v * 2 : a->lo + a->step * (i + 1);
+}
+
+static int is_within(const struct vg_axis *a, double v)
+{
+  return v <= (a->is_log ? a->hi * (1 + 1e-9) : a->hi + 1e-9 * a->step);
 }
 
 void vg_axis_draw_x(struct vg_svg *s, const struct vg_axis *a, double y,
@@ -264,7 +288,7 @@ void vg_axis_draw_x(struct vg_svg *s, const struct vg_axis *a, double y,
   double v = a->lo;
   char text[32];
 
-  for (int i = 0; v <= a->hi * (1 + 1e-9); v = next_tick(a, v, i++)) {
+  for (int i = 0; is_within(a, v); v = next_tick(a, v, i++)) {
     double x = vg_axis_at(a, v);
     const double from[2] = { x, y }, to[2] = { x, top };
 
@@ -284,7 +308,7 @@ void vg_axis_draw_y(struct vg_svg *s, const struct vg_axis *a, double x,
   double v = a->lo;
   char text[32];
 
-  for (int i = 0; v <= a->hi * (1 + 1e-9); v = next_tick(a, v, i++)) {
+  for (int i = 0; is_within(a, v); v = next_tick(a, v, i++)) {
     double y = vg_axis_at(a, v);
     const double from[2] = { x, y }, to[2] = { right, y };
 

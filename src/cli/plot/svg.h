@@ -81,6 +81,10 @@ struct vg_axis {
 /** A linear axis from 0 to at least `most`, with about n ticks. */
 struct vg_axis vg_axis_linear(double most, int n, double from, double to);
 
+/** A linear axis from `least` or less to `most` or more, with about n ticks. */
+struct vg_axis vg_axis_range(double least, double most, int n, double from,
+                             double to);
+
 /** A logarithmic axis from 1 to the smallest power of 2 not below `most`. */
 struct vg_axis vg_axis_log(double most, double from, double to);
 

@@ -53,6 +53,7 @@ static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
   const struct vg_setting_table *farfield = vg_settings_table(
     VG_TABLE_FARFIELD);
   const struct vg_setting_table *sweep = vg_settings_table(VG_TABLE_SWEEP);
+  const struct vg_setting_table *adapt = vg_settings_table(VG_TABLE_ADAPT);
   struct vg_settings defaults;
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
@@ -65,6 +66,10 @@ static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
   st = take_params(f, "sweep", sweep->column, sweep->n_column, &s->sweep,
                    &defaults.sweep, fault, err);
   s->n_sweep = is_given(sweep, &s->sweep, &defaults.sweep);
+  if (st < 0) goto done;
+  st = take_params(f, "adapt", adapt->column, adapt->n_column, &s->adapt,
+                   &defaults.adapt, fault, err);
+  s->n_adapt = is_given(adapt, &s->adapt, &defaults.adapt);
 done:
   return st;
 }

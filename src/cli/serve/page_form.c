@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/serve/form.h"
-#include "cli/serve/page_markup.h"
+#include "cli/common/markup.h"
 #include "cli/serve/rows.h"
 #include "run/common/json_build.h"
 
@@ -167,6 +167,7 @@ struct place {
 union one_row {
   struct vg_farfield_row f;
   struct vg_sweep_row w;
+  struct vg_adapt_row a;
 };
 
 static void table_place(enum vg_table_kind kind, const struct vg_settings *s,
@@ -433,6 +434,7 @@ void vg_form_print(FILE *to, const struct vg_form_view *v)
   print_row(to, v, VG_TABLE_FARFIELD, "Farfield");
   print_tables(to, v);
   print_row(to, v, VG_TABLE_SWEEP, "Sweep");
+  print_row(to, v, VG_TABLE_ADAPT, "Adaptation");
   fputs("</details>\n", to);
   print_where(to, v);
   print_start(to);

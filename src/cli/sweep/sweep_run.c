@@ -2,14 +2,10 @@
 /* Creates the cases of a sweep and runs them one after the other. */
 #define _GNU_SOURCE
 #include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -243,66 +239,11 @@ static void remove_stale(const char *dir)
   if (d) closedir(d);
 }
 
-/* Execute the command in the child process; never returns. */
-static void become(char **word, int log, const sigset_t *mask)
-{
-  sigprocmask(SIG_SETMASK, mask, NULL);
-  signal(SIGINT, SIG_DFL);
-  signal(SIGTERM, SIG_DFL);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
-  execvp(word[0], word);
-  dprintf(STDERR_FILENO, "cannot start %s: %s\n", word[0], strerror(errno));
-  _exit(127);
-}
-
-/* Wait until the child ends. A SIGTERM is forwarded to the child, which does
- * not receive it otherwise (Ctrl-C reaches it directly). */
-static int wait_for(pid_t child, const sigset_t *chld)
-{
-  const struct timespec pause = { 0, 200000000 };
-  int status = 0, signalled = 0;
-
-  for (;;) {
-    pid_t got = waitpid(child, &status, WNOHANG);
-
-    if (got == child) break;
-    if (got < 0 && errno != EINTR) return 127;
-    if (vg_display_interrupted() && !signalled++) kill(child, SIGTERM);
-    sigtimedwait(chld, NULL, &pause);
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
-                       struct vg_error *err)
-{
-  sigset_t chld, before;
-  double start = vg_display_now();
-  pid_t child;
-
-  sigemptyset(&chld);
-  sigaddset(&chld, SIGCHLD);
-  sigprocmask(SIG_BLOCK, &chld, &before);
-  fflush(NULL);
-  child = fork();
-  if (child == 0) become(word, log, &before);
-  if (child > 0) c->exit_status = wait_for(child, &chld);
-  sigprocmask(SIG_SETMASK, &before, NULL);
-  if (child < 0)
-    return vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
-                   strerror(errno));
-  c->wall = vg_display_now() - start;
-  c->is_run = 1;
-  return VG_OK;
-}
-
 vg_status vg_sweep_run(const struct vg_sweep_options *o,
                        struct vg_sweep_case *c, struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
   char *path = NULL;
-  int log = -1;
   vg_status st;
 
   VG_TRY(vg_make_folder(c->dir, err));
@@ -313,12 +254,8 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  log = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (log < 0) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path, strerror(errno));
-    goto done;
-  }
-  VG_TRY(spawn(c, w.word, log, err));
+  VG_TRY(vg_words_run(&w, NULL, path, &c->exit_status, &c->wall, err));
+  c->is_run = 1;
   /* If a limit on the layers is not met, the mesh is complete nevertheless. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
                c->exit_status == VG_EXIT_LIMIT;
@@ -326,7 +263,6 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
   if (vg_display_interrupted())
     st = vg_fail(err, VG_ERR_IO, "interrupted during %s", c->name);
 done:
-  if (log >= 0) close(log);
   vg_words_release(&w);
   free(path);
   return st;

@@ -187,23 +187,30 @@ static int grow(const double from[6], double to[6], const double edge[3],
   return 1;
 }
 
-/* changed: [n_point] set to 1 where a metric is refined */
+/* An edge is examined again only if the metric at one of its ends has changed
+ * since the sweep before.
+ *
+ * changed: [n_point] out: the last sweep, from 1, in which a metric was
+ * refined; 0: none */
 static void limit_growth(const struct vg_estimate *e, double growth,
                          double (*metric)[6], uint8_t *changed)
 {
   const double log_growth = (growth - 1) / vg_log_mean(growth, 1);
   size_t n = 1;
 
-  for (int sweep = 0; sweep < SWEEPS && n; sweep++) {
+  memset(changed, 0, e->m->n_point);
+  for (int sweep = 1; sweep <= SWEEPS && n; sweep++) {
     n = 0;
     for (size_t i = 0; i < e->n_edge; i++) {
-      const uint32_t *p = e->edge[sweep % 2 ? e->n_edge - 1 - i : i];
+      const uint32_t *p = e->edge[sweep % 2 ? i : e->n_edge - 1 - i];
       double edge[3];
 
+      if (sweep > 1 && changed[p[0]] < sweep - 1 && changed[p[1]] < sweep - 1)
+        continue;
       vg_sub(e->m->point[p[1]], e->m->point[p[0]], edge);
       for (int k = 0; k < 2; k++)
         if (grow(metric[p[k]], metric[p[!k]], edge, log_growth)) {
-          changed[p[!k]] = 1;
+          changed[p[!k]] = (uint8_t)sweep;
           n++;
         }
     }
@@ -231,7 +238,7 @@ static void report(const struct vg_estimate *e,
     r->aspect_most = fmax(r->aspect_most, most / least);
     r->n_min += least < o->h_min * (1 + 1e-6);
     r->n_aspect += most > least * o->aspect_max * (1 - 1e-6);
-    r->n_grown += changed[p];
+    r->n_grown += changed[p] > 0;
   }
 }
 
@@ -270,7 +277,6 @@ vg_status vg_multiscale_scale(const struct vg_estimate *e,
   factor = factor_of(o->complexity /
                      complexity_of(e, (const double(*)[6])metric));
   for (int pass = 0; pass < PASSES; pass++) {
-    memset(changed, 0, n);
     for (size_t p = 0; p < n; p++) {
       memcpy(metric[p], raw[p], sizeof raw[p]);
       scale(metric[p], factor);

@@ -245,6 +245,7 @@ union table_row {
   struct vg_surface_row surface;
   struct vg_source source;
   struct vg_sweep_row sweep;
+  struct vg_adapt_row adapt;
 };
 
 static vg_status add_row(const char *file, const char *place,
@@ -269,8 +270,7 @@ static vg_status add_table(const char *file, enum vg_table_kind kind, json_t *v,
   json_t *object;
   size_t i;
 
-  if (kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP)
-    return add_row(file, name, kind, v, s, err);
+  if (vg_table_is_single(kind)) return add_row(file, name, kind, v, s, err);
   if (!json_is_array(v))
     return refuse(err, file, name,
                   is_setting(name)
@@ -456,7 +456,7 @@ json_t *vg_deck_json(const struct vg_settings *s)
       json_array_append_new(list,
                             vg_deck_row_json(kind,
                                              vg_settings_row(s, kind, i)));
-    if (kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP) {
+    if (vg_table_is_single(kind)) {
       if (rows) json_object_set(o, t->name, json_array_get(list, 0));
       json_decref(list);
     } else {

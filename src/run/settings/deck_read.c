@@ -335,6 +335,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     struct vg_surface_row surface;
     struct vg_source source;
     struct vg_sweep_row sweep;
+    struct vg_adapt_row adapt;
   } row;
   size_t n_row = 0;
   int state;
@@ -344,7 +345,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     st = next_line(r, &state, err);
     if (st < 0 || state < 2) return st;
     if (state == 2) continue;
-    if ((kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP) && n_row++)
+    if (vg_table_is_single(kind) && n_row++)
       return vg_fail(err, VG_ERR_FORMAT,
                      "%s:%zu: the table '%s' takes only one line of "
                      "values",

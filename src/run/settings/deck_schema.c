@@ -328,7 +328,7 @@ static json_t *describe_table(enum vg_table_kind kind)
   json_t *o = describe_object(t->name, t->column, t->n_column,
                               vg_deck_row_json(kind, NULL));
 
-  if (kind != VG_TABLE_FARFIELD && kind != VG_TABLE_SWEEP)
+  if (!vg_table_is_single(kind))
     o = json_pack("{s:s, s:o}", "type", "array", "items", o);
   put(o, "description", json_string(t->help));
   return o;

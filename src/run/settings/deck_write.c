@@ -153,6 +153,8 @@ static const char *const example[VG_TABLE_N] = {
                        "# point  0   0   0   0   0.01\n\n",
   [VG_TABLE_SWEEP] = "#\n# sweep\n# ranks  threads  leaf_cells\n"
                      "# 1,2    1:4:x2   100000,300000\n\n",
+  [VG_TABLE_ADAPT] = "#\n# adapt\n# solver       field  cycles  cells\n"
+                     "# \"./run.sh\"  p,Ma   4       500000\n\n",
 };
 
 static void write_table(struct vg_output *out, const struct vg_settings *s,
@@ -167,6 +169,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
     struct vg_surface_row u;
     struct vg_source s;
     struct vg_sweep_row w;
+    struct vg_adapt_row a;
   } defaults;
   char value[CELL_SIZE];
   size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);

@@ -332,6 +332,40 @@ static const struct vg_param sweep_columns[] = {
     .unit = "times", .help = "Number of runs of each case; 0: one" },
 };
 
+#undef AT
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_adapt_row, field),                              \
+  .size = sizeof((struct vg_adapt_row *)0)->field
+#define REAL(name, field, of, about)                                           \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_REAL, .keeps_mesh = 1, .optional = 1,    \
+                     .hi = 1e300, .unit = of, .help = about                    \
+  }
+
+static const struct vg_param adapt_columns[] = {
+  LIST("solver", solver,
+       "Program that computes the flow on the mesh of a cycle, and its "
+       "arguments, separated by blanks; required"),
+  LIST("field", field,
+       "Fields of the solution that the metric resolves, separated by commas; "
+       "required"),
+  LIST("norm", norm, "Norm L^P of the error, 1 to 16 or max; \"\": 2"),
+  { "cycles", AT(cycles), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
+    .unit = "cycles", .help = "Number of meshes and solutions; 0: 4" },
+  REAL("cells", cells, "cells",
+       "Number of cells outside of layers of the second mesh; -: that of the "
+       "first mesh"),
+  REAL("cells_ratio", cells_ratio, "",
+       "Factor on this number from cycle to cycle; -: 2"),
+  REAL("growth", growth, "", "Growth of the metric; -: 1.5"),
+  REAL("h_min", h_min, "length", "Least edge length; -: none"),
+  REAL("h_max", h_max, "length",
+       "Largest edge length; -: the diagonal of the mesh"),
+  REAL("aspect_max", aspect_max, "",
+       "Largest ratio of two edge lengths at a point; -: 100"),
+};
+#undef REAL
+
 #define COUNT(a) (sizeof(a) / sizeof *(a))
 
 static const struct vg_setting_table tables[VG_TABLE_N] = {
@@ -358,6 +392,12 @@ static const struct vg_setting_table tables[VG_TABLE_N] = {
                        "ignore this table. One line.",
                        sweep_columns, COUNT(sweep_columns),
                        sizeof(struct vg_sweep_row) },
+  [VG_TABLE_ADAPT] = { "adapt",
+                       "The loop of mesh, flow solver and metric that "
+                       "vanguard adapt runs; other commands ignore this "
+                       "table. One line.",
+                       adapt_columns, COUNT(adapt_columns),
+                       sizeof(struct vg_adapt_row) },
 };
 
 const struct vg_param *vg_settings_params(size_t *n)
@@ -384,6 +424,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_surface_row surface = { .adjacent = VG_BC_NONE };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
+  struct vg_adapt_row adapt = { "", "", "", 0, NAN, NAN, NAN, NAN, NAN, NAN };
 
   assert(kind < VG_TABLE_N && row);
   far.mach = far.upstream = far.downstream = far.radial = NAN;
@@ -396,6 +437,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_SURFACE: memcpy(row, &surface, sizeof surface); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
+  case VG_TABLE_ADAPT: memcpy(row, &adapt, sizeof adapt); break;
   case VG_TABLE_N: break;
   }
 }
@@ -417,6 +459,7 @@ void vg_settings_default(struct vg_settings *s)
 #include "run/settings/setting_rows.h"
   snprintf(s->title, sizeof s->title, "untitled");
   vg_settings_row_default(VG_TABLE_FARFIELD, &s->farfield);
+  vg_settings_row_default(VG_TABLE_ADAPT, &s->adapt);
 }
 
 #undef VG_ROW
@@ -469,6 +512,10 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
     memcpy(&s->sweep, row, sizeof s->sweep);
     s->n_sweep = 1;
     break;
+  case VG_TABLE_ADAPT:
+    memcpy(&s->adapt, row, sizeof s->adapt);
+    s->n_adapt = 1;
+    break;
   case VG_TABLE_N: break;
   }
   return refused ? vg_fail_memory(err, "the settings") : VG_OK;
@@ -480,6 +527,7 @@ const void *vg_settings_row(const struct vg_settings *s,
   assert(i < vg_settings_rows(s, kind));
   if (kind == VG_TABLE_FARFIELD) return &s->farfield;
   if (kind == VG_TABLE_SWEEP) return &s->sweep;
+  if (kind == VG_TABLE_ADAPT) return &s->adapt;
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
   if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
   if (kind == VG_TABLE_SURFACE) return &s->surface_row[i];
@@ -491,6 +539,7 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   assert(kind < VG_TABLE_N);
   if (kind == VG_TABLE_FARFIELD) return 1;
   if (kind == VG_TABLE_SWEEP) return s->n_sweep;
+  if (kind == VG_TABLE_ADAPT) return s->n_adapt;
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
   if (kind == VG_TABLE_SURFACE) return s->n_surface;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;

@@ -101,6 +101,17 @@ struct vg_sweep_row {
   int64_t repeat; /* 0: not given */
 };
 
+/** The loop of mesh, flow solver and metric that vanguard adapt runs. 0, "" and
+ * NAN: not given. */
+struct vg_adapt_row {
+  char solver[VG_LIST_MAX]; /* program with arguments, separated by blanks */
+  char field[VG_LIST_MAX];  /* as --field of vanguard metric */
+  char norm[8];             /* as --norm */
+  int64_t cycles;
+  double cells, cells_ratio;
+  double growth, h_min, h_max, aspect_max; /* of the metric */
+};
+
 /* The structures below take their members from the rows with their PLACE. */
 #define VG_MEMBER_REAL double
 #define VG_MEMBER_COUNT int64_t
@@ -147,7 +158,8 @@ struct vg_settings {
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;
   struct vg_sweep_row sweep;
-  size_t n_sweep; /* 1: given */
+  struct vg_adapt_row adapt;
+  size_t n_sweep, n_adapt; /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
   size_t n_surface, cap_surface;
   struct vg_source *source;           /* [n_source] owned */
@@ -247,8 +259,16 @@ enum vg_table_kind {
   VG_TABLE_SURFACE,
   VG_TABLE_SOURCES,
   VG_TABLE_SWEEP,
+  VG_TABLE_ADAPT,
   VG_TABLE_N
 };
+
+/** Whether a table has one row at most. */
+static inline int vg_table_is_single(enum vg_table_kind kind)
+{
+  return kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP ||
+         kind == VG_TABLE_ADAPT;
+}
 
 struct vg_setting_table {
   const char *name, *help;
@@ -269,13 +289,13 @@ void vg_settings_default(struct vg_settings *s);
 /** Store the default row of a table in row[row_size]. */
 void vg_settings_row_default(enum vg_table_kind kind, void *row);
 
-/** Append a row; a row of farfield or sweep replaces the existing one. A source
- * with h1 = 0 gets h1 = h0. */
+/** Append a row; that of a table with one row replaces the existing one. A
+ * source with h1 = 0 gets h1 = h0. */
 vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                           const void *row, struct vg_error *err);
 
-/** Row i of a table and the count of rows (farfield: always one; sweep: at most
- * one). */
+/** Row i of a table and the count of rows (farfield: always one; sweep and
+ * adapt: at most one). */
 const void *vg_settings_row(const struct vg_settings *s,
                             enum vg_table_kind kind, size_t i);
 size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind);

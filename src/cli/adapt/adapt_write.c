@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Table, plots and page of a loop. */
+#define _GNU_SOURCE
+#include "cli/adapt/adapt.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/common/markup.h"
+#include "cli/plot/svg.h"
+#include "io/stream/stream.h"
+#include "run/common/text.h"
+
+/* Names of all output quantities, in the order in which they first occur. */
+struct names {
+  size_t n;
+  const char *name[VG_ADAPT_OUTPUTS];
+};
+
+static const double *output_of(const struct vg_adapt_cycle *c, const char *name)
+{
+  for (size_t i = 0; i < c->n_output; i++)
+    if (!strcmp(c->output[i].name, name)) return &c->output[i].value;
+  return NULL;
+}
+
+static struct names names_of(const struct vg_adapt *a)
+{
+  struct names all = { 0 };
+
+  for (size_t i = 0; i < a->n; i++)
+    for (size_t k = 0; k < a->cycle[i].n_output; k++) {
+      const char *name = a->cycle[i].output[k].name;
+      size_t at = 0;
+
+      while (at < all.n && strcmp(all.name[at], name)) at++;
+      if (at == all.n && at < VG_ADAPT_OUTPUTS) all.name[all.n++] = name;
+    }
+  return all;
+}
+
+/* --- text and .csv -------------------------------------------------------- */
+
+static const char *count(double v, char text[32])
+{
+  return v >= 0 ? vg_text_count((unsigned long long)(v + 0.5), text) : "-";
+}
+
+void vg_adapt_print(FILE *to, const struct vg_adapt *a)
+{
+  const struct names all = names_of(a);
+  char text[3][32];
+
+  fprintf(to, "cycle    requested        cells       points  angle  mesh s "
+              "solver s");
+  for (size_t k = 0; k < all.n; k++) fprintf(to, " %14s", all.name[k]);
+  fprintf(to, "\n");
+  for (size_t i = 0; i < a->n; i++) {
+    const struct vg_adapt_cycle *c = &a->cycle[i];
+
+    if (!c->is_done[VG_ADAPT_MESH]) break;
+    fprintf(to, "%5d %12s %12s %12s %6.2f %7.1f", c->number,
+            count(c->requested, text[0]), count(c->cells, text[1]),
+            count(c->points, text[2]), c->angle_min, c->seconds[VG_ADAPT_MESH]);
+    if (c->is_done[VG_ADAPT_SOLVE])
+      fprintf(to, " %8.1f", c->seconds[VG_ADAPT_SOLVE]);
+    else fprintf(to, " %8s", "-");
+    for (size_t k = 0; k < all.n; k++) {
+      const double *v = output_of(c, all.name[k]);
+
+      if (v) fprintf(to, " %14.7g", *v);
+      else fprintf(to, " %14s", "-");
+    }
+    if (c->attempt > 1) fprintf(to, "  attempt %d", c->attempt);
+    if (c->exit_status) fprintf(to, "  a limit is not met");
+    fprintf(to, "\n");
+  }
+}
+
+static void put_real(struct vg_output *out, double v)
+{
+  if (isfinite(v)) vg_output_format(out, ",%.17g", v);
+  else vg_output_text(out, ",");
+}
+
+/* A name in quotes; quotes in it are doubled. */
+static void put_name(struct vg_output *out, const char *name)
+{
+  vg_output_text(out, ",\"");
+  for (; *name; name++)
+    vg_output_format(out, *name == '"' ? "\"\"" : "%c", *name);
+  vg_output_text(out, "\"");
+}
+
+vg_status vg_adapt_write_csv(const struct vg_adapt *a, struct vg_error *err)
+{
+  const struct names all = names_of(a);
+  struct vg_output out = VG_OUTPUT_INIT;
+  char *path = NULL;
+  vg_status st;
+
+  VG_TRY(vg_adapt_path(a->dir, "adapt.csv", &path, err));
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_output_text(&out, "cycle,requested_cells,cells,points,field_cells,"
+                       "angle_min,attempt,metric_seconds,mesh_seconds,"
+                       "solver_seconds");
+  for (size_t k = 0; k < all.n; k++) put_name(&out, all.name[k]);
+  vg_output_text(&out, "\n");
+  for (size_t i = 0; i < a->n && a->cycle[i].is_done[VG_ADAPT_MESH]; i++) {
+    const struct vg_adapt_cycle *c = &a->cycle[i];
+    const double real[] = { c->requested,   c->cells,     c->points,
+                            c->field_cells, c->angle_min, c->attempt };
+
+    vg_output_format(&out, "%d", c->number);
+    for (size_t k = 0; k < sizeof real / sizeof *real; k++)
+      put_real(&out, real[k]);
+    for (int k = 0; k < VG_ADAPT_N; k++)
+      put_real(&out, c->is_done[k] ? c->seconds[k] : NAN);
+    for (size_t k = 0; k < all.n; k++) {
+      const double *v = output_of(c, all.name[k]);
+
+      put_real(&out, v ? *v : NAN);
+    }
+    vg_output_text(&out, "\n");
+  }
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  free(path);
+  return st;
+}
+
+/* --- plots ---------------------------------------------------------------- */
+
+#define WIDTH 560.0
+#define HEIGHT 300.0
+
+static double abscissa(const struct vg_adapt_cycle *c)
+{
+  return pow(c->cells, -2.0 / 3);
+}
+
+/* Values become differences from the last one in per cent, unless it is 0. */
+static const char *relate(size_t n, double (*at)[2])
+{
+  const double last = at[n - 1][1];
+
+  if (!(fabs(last) > 0)) return "value";
+  for (size_t i = 0; i < n; i++) at[i][1] = 100 * (at[i][1] / last - 1);
+  return "difference from the last cycle (%)";
+}
+
+/* Cycles from right to left: the limit of infinitely many cells is at 0. */
+static void draw(struct vg_svg *svg, const struct vg_adapt *a, const char *name,
+                 double (*at)[2])
+{
+  double first = 0, lo = INFINITY, hi = -INFINITY;
+  const char *label;
+  struct vg_axis x, y;
+  size_t n = 0;
+
+  for (size_t i = 0; i < a->n; i++) {
+    const double *v = output_of(&a->cycle[i], name);
+
+    if (!v || !(a->cycle[i].cells > 0)) continue;
+    if (!(first > 0)) first = abscissa(&a->cycle[i]);
+    at[n][0] = abscissa(&a->cycle[i]) / first;
+    at[n++][1] = *v;
+  }
+  if (!n) return;
+  label = relate(n, at);
+  for (size_t i = 0; i < n; i++) {
+    lo = fmin(lo, at[i][1]);
+    hi = fmax(hi, at[i][1]);
+  }
+  x = vg_axis_linear(1, 5, 90, WIDTH - 30);
+  y = vg_axis_range(lo, hi, 5, HEIGHT - 60, 50);
+  vg_axis_draw_y(svg, &y, x.from, x.to, label);
+  vg_axis_draw_x(svg, &x, y.from, y.to,
+                 "(cells / cells of the first cycle)^(-2/3)");
+  for (size_t i = 0; i < n; i++) {
+    at[i][0] = vg_axis_at(&x, fmin(at[i][0], x.hi));
+    at[i][1] = vg_axis_at(&y, at[i][1]);
+    vg_svg_dot(svg, at[i][0], at[i][1], 4, VG_SVG_BLUE);
+  }
+  if (n > 1) vg_svg_polyline(svg, n, (const double(*)[2])at, VG_SVG_BLUE, 2, 0);
+}
+
+static vg_status plot(const struct vg_adapt *a, const char *name,
+                      const char *path, struct vg_error *err)
+{
+  struct vg_svg svg = VG_SVG_INIT;
+  double(*at)[2] = vg_alloc(a->n, sizeof *at);
+  vg_status st;
+
+  if (!at) return vg_fail_memory(err, "a figure");
+  VG_TRY(vg_svg_open(path, WIDTH, HEIGHT, name, "", &svg, err));
+  draw(&svg, a, name, at);
+  st = vg_svg_close(&svg, err);
+done:
+  vg_svg_release(&svg);
+  free(at);
+  return st;
+}
+
+/* --- page ----------------------------------------------------------------- */
+
+static const char style[] =
+  "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;"
+  "padding:0 1em;color:#222}table{border-collapse:collapse}"
+  "td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #ddd}"
+  "figure{display:inline-block;margin:1em 1em 0 0}";
+
+/* A cell of the table; a dash if the number is not known. */
+static void put_cell(FILE *to, double v, int is_count)
+{
+  char text[32];
+
+  if (!isfinite(v)) fputs("<td>-</td>", to);
+  else if (is_count) fprintf(to, "<td>%s</td>", count(v, text));
+  else fprintf(to, "<td>%.7g</td>", v);
+}
+
+static void put_table(FILE *to, const struct vg_adapt *a,
+                      const struct names *all)
+{
+  fputs("<table><tr><th>cycle</th><th>cells requested</th><th>cells</th>"
+        "<th>points</th><th>smallest angle</th><th>mesh, s</th>"
+        "<th>solver, s</th>",
+        to);
+  for (size_t k = 0; k < all->n; k++) {
+    fputs("<th>", to);
+    vg_markup(to, all->name[k]);
+    fputs("</th>", to);
+  }
+  fputs("</tr>\n", to);
+  for (size_t i = 0; i < a->n && a->cycle[i].is_done[VG_ADAPT_MESH]; i++) {
+    const struct vg_adapt_cycle *c = &a->cycle[i];
+
+    fprintf(to, "<tr><td><a href=\"cycle-%d/\">%d</a></td>", c->number,
+            c->number);
+    put_cell(to, c->requested, 1);
+    put_cell(to, c->cells, 1);
+    put_cell(to, c->points, 1);
+    put_cell(to, c->angle_min, 0);
+    put_cell(to, c->seconds[VG_ADAPT_MESH], 0);
+    put_cell(to, c->is_done[VG_ADAPT_SOLVE] ? c->seconds[VG_ADAPT_SOLVE] : NAN,
+             0);
+    for (size_t k = 0; k < all->n; k++) {
+      const double *v = output_of(c, all->name[k]);
+
+      put_cell(to, v ? *v : NAN, 0);
+    }
+    fputs("</tr>\n", to);
+  }
+  fputs("</table>\n", to);
+}
+
+/* What a reader must know about single cycles. */
+static void put_notes(FILE *to, const struct vg_adapt *a)
+{
+  for (size_t i = 0; i < a->n; i++) {
+    const struct vg_adapt_cycle *c = &a->cycle[i];
+    double growth, aspect_max;
+
+    if (c->exit_status)
+      fprintf(to,
+              "<p>The mesh of cycle %d does not meet a limit; its report "
+              "says which.</p>\n",
+              c->number);
+    if (c->attempt < 2 || !c->is_done[VG_ADAPT_MESH]) continue;
+    vg_adapt_attempt(&a->o->row, c->attempt, &growth, &aspect_max);
+    fprintf(to,
+            "<p>Cycle %d: no mesh could be made by the requested metric. The "
+            "metric of attempt %d has growth %g and aspect_max %g.</p>\n",
+            c->number, c->attempt, growth, aspect_max);
+  }
+}
+
+static vg_status put_figure(FILE *to, const struct vg_adapt *a,
+                            const char *name, struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  char *path = NULL;
+  vg_status st;
+
+  VG_TRY(vg_adapt_path(a->dir, "adapt.svg", &path, err));
+  VG_TRY(plot(a, name, path, err));
+  VG_TRY(vg_input_open(path, &in, err));
+  fputs("<figure>", to);
+  fwrite(in.data, 1, in.size, to);
+  fputs("</figure>\n", to);
+done:
+  if (path) remove(path);
+  vg_input_release(&in);
+  free(path);
+  return st;
+}
+
+static vg_status put_page(FILE *to, const struct vg_adapt *a,
+                          struct vg_error *err)
+{
+  const struct names all = names_of(a);
+  vg_status st = VG_OK;
+
+  fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+        "<title>Adaptation: ",
+        to);
+  vg_markup(to, a->stem);
+  fprintf(to,
+          "</title><style>%s</style></head><body>\n<h1>Adaptation: ", style);
+  vg_markup(to, a->stem);
+  fputs("</h1>\n<p>Solver: <code>", to);
+  vg_markup(to, a->o->row.solver);
+  fputs("</code>. Fields of the metric: <code>", to);
+  vg_markup(to, a->o->row.field);
+  fputs("</code>.</p>\n", to);
+  put_table(to, a, &all);
+  put_notes(to, a);
+  for (size_t k = 0; k < all.n && st >= 0; k++)
+    st = put_figure(to, a, all.name[k], err);
+  fputs("</body></html>\n", to);
+  return st;
+}
+
+vg_status vg_adapt_write_page(const struct vg_adapt *a, struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  char *text = NULL, *path = NULL;
+  size_t size = 0;
+  FILE *to = vg_text_open(&text, &size);
+  vg_status st;
+
+  if (!to) return vg_fail_memory(err, "the page of the loop");
+  st = put_page(to, a, err);
+  if (fclose(to) && st >= 0) st = vg_fail_memory(err, "the page of the loop");
+  VG_TRY(st);
+  VG_TRY(vg_adapt_path(a->dir, "adapt.html", &path, err));
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_output_text(&out, text);
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  free(path);
+  free(text);
+  return st;
+}
