@@ -61,6 +61,12 @@ foreach(driver cases solvers)
   file(CREATE_LINK ${drivers}/vanguard_${driver}.py ${link} SYMBOLIC)
   install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT python3)
 endforeach()
+# Scripts that run a flow solver in a cycle of vanguard adapt.
+install(DIRECTORY share/adapt DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard
+  COMPONENT program USE_SOURCE_PERMISSIONS)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/vanguard)
+file(CREATE_LINK ${CMAKE_SOURCE_DIR}/share/adapt
+  ${CMAKE_BINARY_DIR}/share/vanguard/adapt SYMBOLIC)
 install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard
   COMPONENT program)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff

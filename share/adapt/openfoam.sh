@@ -19,8 +19,8 @@ set -euo pipefail
 
 die() { echo "openfoam.sh: $*" >&2; exit 1; }
 
-# OpenFOAM's file of settings takes the arguments of the function that reads it
-# for settings: there must be none.
+# OpenFOAM's bashrc takes the arguments of the function that reads it for
+# settings, so this function has no arguments.
 load_openfoam() { set +eu; . "$settings" 2>/dev/null; set -eu; }
 find_openfoam() {
   [ -z "${WM_PROJECT_DIR:-}" ] || return 0

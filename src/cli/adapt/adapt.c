@@ -136,12 +136,17 @@ static json_t *cycle_json(const struct vg_adapt_cycle *c)
 
 json_t *vg_adapt_json(const struct vg_adapt *a)
 {
-  json_t *o = json_object(), *list = json_array();
+  json_t *o = json_object(), *list = json_array(), *notes = json_array();
+  char note[VG_ADAPT_NOTE];
 
   for (size_t i = 0; i < a->n; i++)
     json_array_append_new(list, cycle_json(&a->cycle[i]));
+  for (size_t i = 0; i < a->n; i++)
+    for (int k = 0; vg_adapt_note(a, &a->cycle[i], k, note); k++)
+      if (*note) json_array_append_new(notes, vg_text_json(note));
   json_object_set(o, "settings", a->settings);
   json_object_set_new(o, "cycles", list);
+  json_object_set_new(o, "notes", notes);
   return o;
 }
 

@@ -79,6 +79,12 @@ vg_status vg_adapt_record(const struct vg_adapt *a, struct vg_error *err);
  * an error that names its log. */
 vg_status vg_adapt_run(struct vg_adapt *a, struct vg_error *err);
 
+#define VG_ADAPT_NOTE 300
+/** What a reader must know about a cycle: note k, or "". Returns 0 after the
+ * last one. */
+int vg_adapt_note(const struct vg_adapt *a, const struct vg_adapt_cycle *c,
+                  int k, char note[VG_ADAPT_NOTE]);
+
 /** The table of the cycles: for people; adapt.csv; as JSON, owned by the
  * caller. */
 void vg_adapt_print(FILE *to, const struct vg_adapt *a);

@@ -301,8 +301,9 @@ static void set_environment(const struct vg_adapt *a,
 
 /* A line name,value; the name may be in quotes, and blanks around both are
  * ignored. */
-static vg_status take_output(struct vg_input *in, const char *text, size_t n,
-                             struct vg_adapt_cycle *c, struct vg_error *err)
+static vg_status take_output(const struct vg_input *in, const char *text,
+                             size_t n, struct vg_adapt_cycle *c,
+                             struct vg_error *err)
 {
   const char *comma = memchr(text, ',', n);
   struct vg_adapt_output *to = &c->output[c->n_output];
@@ -317,18 +318,20 @@ static vg_status take_output(struct vg_input *in, const char *text, size_t n,
   while (end > from && isspace((unsigned char)end[-1])) end--;
   if (!len || len >= sizeof to->name ||
       !vg_parse_real(from, (size_t)(end - from), &to->value))
-    return vg_input_fail(in, err,
-                         "an output quantity is a name of at most %zu "
-                         "characters, a comma and a number",
-                         sizeof to->name - 1);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s, line %zu: an output quantity is a name of at most %zu "
+                   "characters, a comma and a number",
+                   in->path, in->line - 1, sizeof to->name - 1);
   if (c->n_output == VG_ADAPT_OUTPUTS)
-    return vg_input_fail(in, err, "more than %d output quantities",
-                         VG_ADAPT_OUTPUTS);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s, line %zu: more than %d output quantities", in->path,
+                   in->line - 1, VG_ADAPT_OUTPUTS);
   memcpy(to->name, text, len);
   to->name[len] = 0;
   for (size_t i = 0; i < c->n_output; i++)
     if (!strcmp(c->output[i].name, to->name))
-      return vg_input_fail(in, err, "'%s' occurs twice", to->name);
+      return vg_fail(err, VG_ERR_FORMAT, "%s, line %zu: '%s' occurs twice",
+                     in->path, in->line - 1, to->name);
   c->n_output++;
   return VG_OK;
 }
@@ -368,6 +371,32 @@ static void remove_results(const struct vg_adapt_cycle *c)
   }
 }
 
+/* A solver without a folder may be one of the installed scripts. */
+static vg_status find_script(struct vg_words *w, struct vg_error *err)
+{
+  char *own_path, *slash, *path = NULL;
+  vg_status st;
+
+  if (!w->n || strchr(w->word[0], '/')) return VG_OK;
+  own_path = vg_own_path();
+  if (!own_path) return vg_fail_memory(err, "a path");
+  slash = strrchr(own_path, '/');
+  if (slash) *slash = 0;
+  st = slash && asprintf(&path, "%s/" VG_ADAPT_FROM_BIN "/%s", own_path,
+                         w->word[0]) < 0
+       ? vg_fail_memory(err, "a path")
+       : VG_OK;
+  free(own_path);
+  if (st < 0) return st;
+  if (!path || access(path, X_OK)) {
+    free(path);
+    return VG_OK;
+  }
+  free(w->word[0]);
+  w->word[0] = path;
+  return VG_OK;
+}
+
 static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                        struct vg_error *err)
 {
@@ -380,6 +409,7 @@ static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   set_environment(a, c);
   VG_TRY(
     vg_words_launcher(&w, a->o->row.solver, a->o->ranks, a->o->threads, err));
+  VG_TRY(find_script(&w, err));
   VG_TRY(run(a, c, VG_ADAPT_SOLVE, &w, "solver", &status, note, err));
   if (status)
     st = vg_fail(err, VG_ERR_INPUT,

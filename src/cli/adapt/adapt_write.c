@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/common/markup.h"
+#include "cli/common/page_markup.h"
 #include "cli/plot/svg.h"
 #include "io/stream/stream.h"
 #include "run/common/text.h"
@@ -41,6 +41,38 @@ static struct names names_of(const struct vg_adapt *a)
   return all;
 }
 
+/* Cells over the requested number beyond which there is a note. */
+#define MANY 1.3
+#define FEW 0.75
+
+int vg_adapt_note(const struct vg_adapt *a, const struct vg_adapt_cycle *c,
+                  int k, char note[VG_ADAPT_NOTE])
+{
+  const double ratio = c->field_cells / c->requested;
+  double growth, aspect_max;
+
+  *note = 0;
+  if (k == 0 && c->exit_status)
+    snprintf(note, VG_ADAPT_NOTE,
+             "the mesh of cycle %d does not meet a limit; its report says "
+             "which",
+             c->number);
+  if (k == 1 && c->attempt > 1 && c->is_done[VG_ADAPT_MESH]) {
+    vg_adapt_attempt(&a->o->row, c->attempt, &growth, &aspect_max);
+    snprintf(note, VG_ADAPT_NOTE,
+             "cycle %d: no mesh could be made by the requested metric; that "
+             "of attempt %d has growth %g and aspect_max %g",
+             c->number, c->attempt, growth, aspect_max);
+  }
+  if (k == 2 && (ratio > MANY || ratio < FEW))
+    snprintf(
+      note, VG_ADAPT_NOTE,
+      "cycle %d: %.2g times the requested cells: hmax, sources, gaps and "
+      "the surface of the deck apply together with the metric",
+      c->number, ratio);
+  return k < 3;
+}
+
 /* --- text and .csv -------------------------------------------------------- */
 
 static const char *count(double v, char text[32])
@@ -51,7 +83,7 @@ static const char *count(double v, char text[32])
 void vg_adapt_print(FILE *to, const struct vg_adapt *a)
 {
   const struct names all = names_of(a);
-  char text[3][32];
+  char text[3][32], note[VG_ADAPT_NOTE];
 
   fprintf(to, "cycle    requested        cells       points  angle  mesh s "
               "solver s");
@@ -73,10 +105,11 @@ void vg_adapt_print(FILE *to, const struct vg_adapt *a)
       if (v) fprintf(to, " %14.7g", *v);
       else fprintf(to, " %14s", "-");
     }
-    if (c->attempt > 1) fprintf(to, "  attempt %d", c->attempt);
-    if (c->exit_status) fprintf(to, "  a limit is not met");
     fprintf(to, "\n");
   }
+  for (size_t i = 0; i < a->n; i++)
+    for (int k = 0; vg_adapt_note(a, &a->cycle[i], k, note); k++)
+      if (*note) fprintf(to, "  note: %s\n", note);
 }
 
 static void put_real(struct vg_output *out, double v)
@@ -258,25 +291,13 @@ static void put_table(FILE *to, const struct vg_adapt *a,
   fputs("</table>\n", to);
 }
 
-/* What a reader must know about single cycles. */
 static void put_notes(FILE *to, const struct vg_adapt *a)
 {
-  for (size_t i = 0; i < a->n; i++) {
-    const struct vg_adapt_cycle *c = &a->cycle[i];
-    double growth, aspect_max;
+  char note[VG_ADAPT_NOTE];
 
-    if (c->exit_status)
-      fprintf(to,
-              "<p>The mesh of cycle %d does not meet a limit; its report "
-              "says which.</p>\n",
-              c->number);
-    if (c->attempt < 2 || !c->is_done[VG_ADAPT_MESH]) continue;
-    vg_adapt_attempt(&a->o->row, c->attempt, &growth, &aspect_max);
-    fprintf(to,
-            "<p>Cycle %d: no mesh could be made by the requested metric. The "
-            "metric of attempt %d has growth %g and aspect_max %g.</p>\n",
-            c->number, c->attempt, growth, aspect_max);
-  }
+  for (size_t i = 0; i < a->n; i++)
+    for (int k = 0; vg_adapt_note(a, &a->cycle[i], k, note); k++)
+      if (*note) fprintf(to, "<p>%s.</p>\n", note);
 }
 
 static vg_status put_figure(FILE *to, const struct vg_adapt *a,

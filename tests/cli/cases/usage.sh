@@ -13,6 +13,7 @@ layers on the walls, tetrahedra elsewhere.
   partition partition a volume mesh for a parallel flow solver
   convert   write a mesh or a surface in another format
   metric    make the metric of the next mesh from a flow solution
+  adapt     run cycles of mesh, flow solver and metric
   plan      forecast cells, memory and time of a run
   sweep     mesh with various subdomain sizes, ranks and threads; compare
   serve     start, monitor and resume runs from a browser
