@@ -148,6 +148,8 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_sweep_row sweep = { "1,2",         "1:4:x2", "",
                                 "20000,50000", "1:3",    "advancing,octree",
                                 "4,16",        3 };
+  struct vg_adapt_row adapt = { "./run.sh a b", "p,Ma", "max", 5, 1e6, 1.5, NAN,
+                                1e-4,           NAN,    10 };
 
   (void)state;
   vg_settings_default(&s);
@@ -199,6 +201,7 @@ static void everything_survives_a_round_trip(void **state)
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_MACHCONE; kind++)
     add_source(&s, kind);
   vg_settings_add(&s, VG_TABLE_SWEEP, &sweep, NULL);
+  vg_settings_add(&s, VG_TABLE_ADAPT, &adapt, NULL);
   round_trip(&s, VG_DECK_ALL);
   round_trip(&s, VG_DECK_CHANGED);
   round_trip(&s, VG_DECK_EXPLAINED);
