@@ -13,10 +13,9 @@
 #include "cli/common/cli.h"
 #include "cli/common/process.h"
 #include "io/stream/stream.h"
+#include "partition/store/store.h"
 #include "run/common/folder.h"
 #include "run/common/progress.h"
-
-#define RUN_FOLDER "mesh.run" /* finished tasks of a mesh that was stopped */
 
 /* Files in which a solver may leave its solution. */
 static const char *const solution_names[] = { "solution.vtu", "solution.csv",
@@ -25,11 +24,12 @@ enum { N_SOLUTION = sizeof solution_names / sizeof *solution_names };
 
 /* --- child processes ------------------------------------------------------ */
 
-/* Run a command with its output in the log NAME.log of the cycle. */
+/* Run a command with its output in the log NAME.log of the cycle; `out` is the
+ * file of its standard output, or NULL. */
 static vg_status run(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                      enum vg_adapt_step step, const struct vg_words *w,
-                     const char *name, int *status, char note[256],
-                     struct vg_error *err)
+                     const char *name, const char *out, int *status,
+                     char note[256], struct vg_error *err)
 {
   char file[32], *log = NULL;
   double wall = 0;
@@ -39,8 +39,8 @@ static vg_status run(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   VG_TRY(vg_adapt_path(c->dir, file, &log, err));
   if (!a->o->quiet)
     fprintf(stderr, "cycle %d of %zu: %s\n", c->number, a->n, name);
-  VG_TRY(vg_words_run(w, step == VG_ADAPT_SOLVE ? a->home : NULL, log, status,
-                      &wall, err));
+  VG_TRY(vg_words_run(w, step == VG_ADAPT_SOLVE ? a->home : NULL, log, out,
+                      status, &wall, err));
   c->seconds[step] += wall;
   if (*status) vg_failure_note(log, note, 256);
   if (vg_display_interrupted())
@@ -176,7 +176,7 @@ static vg_status make_metric(const struct vg_adapt *a, struct vg_adapt_cycle *c,
 
   c->requested = cells_of(a, c->number);
   VG_TRY(metric_line(a, c, &w, err));
-  VG_TRY(run(a, c, VG_ADAPT_METRIC, &w, "metric", &status, note, err));
+  VG_TRY(run(a, c, VG_ADAPT_METRIC, &w, "metric", NULL, &status, note, err));
   if (status)
     st = vg_fail(err, VG_ERR_INPUT,
                  "cycle %d: no metric: %s; the log is %s/metric.log", c->number,
@@ -193,13 +193,15 @@ static vg_status mesh_line(const struct vg_adapt *a,
                            struct vg_error *err)
 {
   const struct vg_adapt_options *o = a->o;
-  char name[32];
+  char name[32], kept[32]; /* finished tasks of a mesh that was stopped */
   vg_status st;
 
+  snprintf(kept, sizeof kept, "mesh-%d.run", c->attempt);
   VG_TRY(vg_words_launcher(w, o->launcher, o->ranks, o->threads, err));
   VG_TRY(own(o, "mesh", w, err));
   VG_TRY(add_two(w, "-p", o->project, err));
   if (o->deck) VG_TRY(add_two(w, "--deck", o->deck, err));
+  VG_TRY(vg_words_add(w, "--json", err));
   if (o->threads) VG_TRY(vg_words_pair(w, "--threads", o->threads, err));
   if (c->number > 1) {
     metric_name(c->attempt, name);
@@ -207,8 +209,9 @@ static vg_status mesh_line(const struct vg_adapt *a,
     VG_TRY(add_two(w, "--surface-sizes", "no", err));
     VG_TRY(add_two(w, "--growth", "2", err));
   }
-  VG_TRY(add_path(w, "--run-dir", c->dir, RUN_FOLDER, err));
-  if (has_file(c->dir, RUN_FOLDER)) VG_TRY(vg_words_add(w, "--resume", err));
+  VG_TRY(add_path(w, "--run-dir", c->dir, kept, err));
+  if (vg_store_has_run(w->word[w->n - 1], NULL) >= 0)
+    VG_TRY(vg_words_add(w, "--resume", err));
   VG_TRY(add_two(w, "-o", c->dir, err));
   for (int i = 0; i < o->n_extra; i++)
     VG_TRY(vg_words_add(w, o->extra[i], err));
@@ -241,16 +244,36 @@ static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
   free(path);
 }
 
+/* Did the mesher fail because of the geometry? Everything else must not select
+ * another metric: no memory, a full disk, a file that is gone. */
+static int is_geometry(const char *answer)
+{
+  json_t *o = json_load_file(answer, 0, NULL);
+  const char *kind = json_string_value(json_object_get(o, "error_kind"));
+  const int is = kind && !strcmp(kind, vg_status_name(VG_ERR_GEOMETRY));
+
+  json_decref(o);
+  return is;
+}
+
+/* *again: another metric may help. */
 static vg_status try_mesh(const struct vg_adapt *a, struct vg_adapt_cycle *c,
-                          char note[256], struct vg_error *err)
+                          int *again, char note[256], struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
+  char *answer = NULL;
   vg_status st;
 
+  VG_TRY(vg_adapt_path(c->dir, "mesh.json", &answer, err));
   VG_TRY(mesh_line(a, c, &w, err));
-  st = run(a, c, VG_ADAPT_MESH, &w, "mesh", &c->exit_status, note, err);
+  VG_TRY(
+    run(a, c, VG_ADAPT_MESH, &w, "mesh", answer, &c->exit_status, note, err));
+  *again = c->exit_status == VG_EXIT_FAILED && c->number > 1 &&
+           c->attempt < VG_ADAPT_ATTEMPTS && is_geometry(answer);
+  unlink(answer);
 done:
   vg_words_release(&w);
+  free(answer);
   return st;
 }
 
@@ -260,13 +283,12 @@ static vg_status make_mesh(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                            struct vg_error *err)
 {
   char note[256] = "";
+  int again = 0;
   vg_status st;
 
   for (;;) {
-    VG_TRY(try_mesh(a, c, note, err));
-    if (c->exit_status != VG_EXIT_FAILED || c->number == 1 ||
-        c->attempt == VG_ADAPT_ATTEMPTS)
-      break;
+    VG_TRY(try_mesh(a, c, &again, note, err));
+    if (!again) break;
     c->attempt++;
     fprintf(stderr,
             "cycle %d: no mesh: %s; attempt %d with a metric of less growth "
@@ -410,7 +432,7 @@ static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   VG_TRY(
     vg_words_launcher(&w, a->o->row.solver, a->o->ranks, a->o->threads, err));
   VG_TRY(find_script(&w, err));
-  VG_TRY(run(a, c, VG_ADAPT_SOLVE, &w, "solver", &status, note, err));
+  VG_TRY(run(a, c, VG_ADAPT_SOLVE, &w, "solver", NULL, &status, note, err));
   if (status)
     st = vg_fail(err, VG_ERR_INPUT,
                  "cycle %d: the solver ended with status %d: %s; its log is "

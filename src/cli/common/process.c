@@ -88,13 +88,14 @@ vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
 }
 
 /* Execute the command in the child process; never returns. */
-static void become(char **word, const char *dir, int log, const sigset_t *mask)
+static void become(char **word, const char *dir, const int to[2],
+                   const sigset_t *mask)
 {
   sigprocmask(SIG_SETMASK, mask, NULL);
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
+  dup2(to[0], STDOUT_FILENO);
+  dup2(to[1], STDERR_FILENO);
   if (dir && chdir(dir)) {
     dprintf(STDERR_FILENO, "cannot enter %s: %s\n", dir, strerror(errno));
     _exit(127);
@@ -122,18 +123,28 @@ static int wait_for(pid_t child, const sigset_t *chld)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-vg_status vg_words_run(const struct vg_words *w, const char *dir,
-                       const char *log, int *status, double *wall,
-                       struct vg_error *err)
+static int open_log(const char *path, struct vg_error *err)
 {
-  const int to = open(log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  const double start = vg_display_now();
-  sigset_t chld, before;
-  pid_t child;
+  const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 
-  if (to < 0)
-    return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", log,
-                   strerror(errno));
+  if (fd < 0)
+    vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path, strerror(errno));
+  return fd;
+}
+
+vg_status vg_words_run(const struct vg_words *w, const char *dir,
+                       const char *log, const char *out, int *status,
+                       double *wall, struct vg_error *err)
+{
+  const double start = vg_display_now();
+  int to[2] = { -1, -1 };
+  sigset_t chld, before;
+  pid_t child = -1;
+  vg_status st = VG_ERR_IO;
+
+  to[1] = open_log(log, err);
+  to[0] = to[1] >= 0 && out ? open_log(out, err) : to[1];
+  if (to[0] < 0) goto done;
   sigemptyset(&chld);
   sigaddset(&chld, SIGCHLD);
   sigprocmask(SIG_BLOCK, &chld, &before);
@@ -142,12 +153,14 @@ vg_status vg_words_run(const struct vg_words *w, const char *dir,
   if (child == 0) become(w->word, dir, to, &before);
   if (child > 0) *status = wait_for(child, &chld);
   sigprocmask(SIG_SETMASK, &before, NULL);
-  close(to);
-  if (child < 0)
-    return vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
-                   strerror(errno));
   *wall = vg_display_now() - start;
-  return VG_OK;
+  st = child > 0 ? VG_OK
+                 : vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
+                           strerror(errno));
+done:
+  if (to[0] >= 0 && to[0] != to[1]) close(to[0]);
+  if (to[1] >= 0) close(to[1]);
+  return st;
 }
 
 char *vg_own_path(void)

@@ -39,13 +39,14 @@ vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
  * to the file `log`, which is replaced. A SIGTERM is forwarded to it.
  *
  * @param dir     its working directory; NULL: that of this process
+ * @param out     file for its standard output; NULL: the log
  * @param status  out: its exit status; 128 + n: ended by signal n; 127: it
  *                could not be started, and the log says why
  * @param wall    out: seconds from start to exit
  * VG_ERR_IO if the log cannot be written or no process can be created. */
 vg_status vg_words_run(const struct vg_words *w, const char *dir,
-                       const char *log, int *status, double *wall,
-                       struct vg_error *err);
+                       const char *log, const char *out, int *status,
+                       double *wall, struct vg_error *err);
 
 /** Path of this program; the caller frees it. NULL: out of memory. */
 char *vg_own_path(void);

@@ -254,7 +254,7 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  VG_TRY(vg_words_run(&w, NULL, path, &c->exit_status, &c->wall, err));
+  VG_TRY(vg_words_run(&w, NULL, path, NULL, &c->exit_status, &c->wall, err));
   c->is_run = 1;
   /* If a limit on the layers is not met, the mesh is complete nevertheless. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||

@@ -78,17 +78,41 @@ vanguard adapt box.deck -o b --cycles 3 -q
 exits 0
 for i in 1 2 3; do same "a/cycle-$i/box.b8.ugrid" "b/cycle-$i/box.b8.ugrid"; done
 
-# A mesh that fails is tried with other metrics, and the record says so.
+# A signal ends the step that is running.
+cat >slow.sh <<'END'
+#!/bin/bash
+touch is-running
+sleep 60
+END
+chmod +x slow.sh
+"$program" adapt -p box.lb8.ugrid -o s --field q --solver ./slow.sh -q \
+  >out 2>err &
+loop=$!
+for _ in $(seq 200); do [ ! -e is-running ] || break; sleep 0.1; done
+kill -TERM "$loop"
+wait "$loop"
+status=$?
+exits 1
+says err "interrupted in cycle 1; the same command continues"
+
+# A mesh that fails because of the geometry is tried with other metrics, and the
+# record says so; no other failure selects another metric.
 cat >stand-in <<END
 #!/bin/bash
 case "\$*" in
   *cycle-2/metric.vtu*--out*|*cycle-2/metric-2.vtu*--out*) ;;
   mesh*cycle-2/metric.vtu*|mesh*cycle-2/metric-2.vtu*)
+    echo "{\"error_kind\": \"\$KIND\"}"
     echo "vanguard: no mesh here" >&2; exit 1 ;;
 esac
 exec "$program" "\$@"
 END
 chmod +x stand-in
+export KIND=memory
+vanguard adapt box.deck -o c --program ./stand-in
+exits 1
+says err "cycle 2: no mesh: no mesh here; the log is"
+export KIND=geometry
 vanguard adapt box.deck -o c --program ./stand-in
 exits 0
 says err "cycle 2: no mesh: no mesh here; attempt 3"
