@@ -12,7 +12,7 @@
 #include "cli/http/http.h"
 #include "cli/http/inside.h"
 #include "cli/http/visitors.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/projects.h"
 #include "cli/serve/runs.h"
 #include "portal_support.h"

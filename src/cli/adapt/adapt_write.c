@@ -8,9 +8,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/common/page_markup.h"
 #include "cli/plot/svg.h"
-#include "io/stream/stream.h"
+#include "io/stream/csv.h"
 #include "run/common/text.h"
 
 /* Names of all output quantities, in the order in which they first occur. */
@@ -114,17 +113,8 @@ void vg_adapt_print(FILE *to, const struct vg_adapt *a)
 
 static void put_real(struct vg_output *out, double v)
 {
-  if (isfinite(v)) vg_output_format(out, ",%.17g", v);
-  else vg_output_text(out, ",");
-}
-
-/* A name in quotes; quotes in it are doubled. */
-static void put_name(struct vg_output *out, const char *name)
-{
-  vg_output_text(out, ",\"");
-  for (; *name; name++)
-    vg_output_format(out, *name == '"' ? "\"\"" : "%c", *name);
-  vg_output_text(out, "\"");
+  vg_output_text(out, ",");
+  if (isfinite(v)) vg_output_real(out, v);
 }
 
 vg_status vg_adapt_write_csv(const struct vg_adapt *a, struct vg_error *err)
@@ -139,7 +129,10 @@ vg_status vg_adapt_write_csv(const struct vg_adapt *a, struct vg_error *err)
   vg_output_text(&out, "cycle,requested_cells,cells,points,field_cells,"
                        "angle_min,attempt,metric_seconds,mesh_seconds,"
                        "solver_seconds");
-  for (size_t k = 0; k < all.n; k++) put_name(&out, all.name[k]);
+  for (size_t k = 0; k < all.n; k++) {
+    vg_output_text(&out, ",");
+    vg_csv_put(&out, all.name[k]);
+  }
   vg_output_text(&out, "\n");
   for (size_t i = 0; i < a->n && a->cycle[i].is_done[VG_ADAPT_MESH]; i++) {
     const struct vg_adapt_cycle *c = &a->cycle[i];
@@ -247,60 +240,63 @@ static const char style[] =
   "figure{display:inline-block;margin:1em 1em 0 0}";
 
 /* A cell of the table; a dash if the number is not known. */
-static void put_cell(FILE *to, double v, int is_count)
+static void put_cell(struct vg_output *to, double v, int is_count)
 {
   char text[32];
 
-  if (!isfinite(v)) fputs("<td>-</td>", to);
-  else if (is_count) fprintf(to, "<td>%s</td>", count(v, text));
-  else fprintf(to, "<td>%.7g</td>", v);
+  if (!isfinite(v)) strcpy(text, "-");
+  else if (is_count) count(v, text);
+  else snprintf(text, sizeof text, "%.7g", v);
+  vg_output_format(to, "<td>%s</td>", text);
 }
 
-static void put_table(FILE *to, const struct vg_adapt *a,
+static void put_row(struct vg_output *to, const struct vg_adapt_cycle *c,
+                    const struct names *all)
+{
+  vg_output_format(to, "<tr><td><a href=\"cycle-%d/\">%d</a></td>", c->number,
+                   c->number);
+  put_cell(to, c->requested, 1);
+  put_cell(to, c->cells, 1);
+  put_cell(to, c->points, 1);
+  put_cell(to, c->angle_min, 0);
+  put_cell(to, c->seconds[VG_ADAPT_MESH], 0);
+  put_cell(to, c->is_done[VG_ADAPT_SOLVE] ? c->seconds[VG_ADAPT_SOLVE] : NAN,
+           0);
+  for (size_t k = 0; k < all->n; k++) {
+    const double *v = output_of(c, all->name[k]);
+
+    put_cell(to, v ? *v : NAN, 0);
+  }
+  vg_output_text(to, "</tr>\n");
+}
+
+static void put_table(struct vg_output *to, const struct vg_adapt *a,
                       const struct names *all)
 {
-  fputs("<table><tr><th>cycle</th><th>cells requested</th><th>cells</th>"
-        "<th>points</th><th>smallest angle</th><th>mesh, s</th>"
-        "<th>solver, s</th>",
-        to);
+  vg_output_text(to, "<table><tr><th>cycle</th><th>cells requested</th>"
+                     "<th>cells</th><th>points</th><th>smallest angle</th>"
+                     "<th>mesh, s</th><th>solver, s</th>");
   for (size_t k = 0; k < all->n; k++) {
-    fputs("<th>", to);
-    vg_markup(to, all->name[k]);
-    fputs("</th>", to);
+    vg_output_text(to, "<th>");
+    vg_output_markup(to, all->name[k]);
+    vg_output_text(to, "</th>");
   }
-  fputs("</tr>\n", to);
-  for (size_t i = 0; i < a->n && a->cycle[i].is_done[VG_ADAPT_MESH]; i++) {
-    const struct vg_adapt_cycle *c = &a->cycle[i];
-
-    fprintf(to, "<tr><td><a href=\"cycle-%d/\">%d</a></td>", c->number,
-            c->number);
-    put_cell(to, c->requested, 1);
-    put_cell(to, c->cells, 1);
-    put_cell(to, c->points, 1);
-    put_cell(to, c->angle_min, 0);
-    put_cell(to, c->seconds[VG_ADAPT_MESH], 0);
-    put_cell(to, c->is_done[VG_ADAPT_SOLVE] ? c->seconds[VG_ADAPT_SOLVE] : NAN,
-             0);
-    for (size_t k = 0; k < all->n; k++) {
-      const double *v = output_of(c, all->name[k]);
-
-      put_cell(to, v ? *v : NAN, 0);
-    }
-    fputs("</tr>\n", to);
-  }
-  fputs("</table>\n", to);
+  vg_output_text(to, "</tr>\n");
+  for (size_t i = 0; i < a->n && a->cycle[i].is_done[VG_ADAPT_MESH]; i++)
+    put_row(to, &a->cycle[i], all);
+  vg_output_text(to, "</table>\n");
 }
 
-static void put_notes(FILE *to, const struct vg_adapt *a)
+static void put_notes(struct vg_output *to, const struct vg_adapt *a)
 {
   char note[VG_ADAPT_NOTE];
 
   for (size_t i = 0; i < a->n; i++)
     for (int k = 0; vg_adapt_note(a, &a->cycle[i], k, note); k++)
-      if (*note) fprintf(to, "<p>%s.</p>\n", note);
+      if (*note) vg_output_format(to, "<p>%s.</p>\n", note);
 }
 
-static vg_status put_figure(FILE *to, const struct vg_adapt *a,
+static vg_status put_figure(struct vg_output *to, const struct vg_adapt *a,
                             const char *name, struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
@@ -310,9 +306,9 @@ static vg_status put_figure(FILE *to, const struct vg_adapt *a,
   VG_TRY(vg_adapt_path(a->dir, "adapt.svg", &path, err));
   VG_TRY(plot(a, name, path, err));
   VG_TRY(vg_input_open(path, &in, err));
-  fputs("<figure>", to);
-  fwrite(in.data, 1, in.size, to);
-  fputs("</figure>\n", to);
+  vg_output_text(to, "<figure>");
+  vg_output_text(to, (const char *)in.data);
+  vg_output_text(to, "</figure>\n");
 done:
   if (path) remove(path);
   vg_input_release(&in);
@@ -320,51 +316,43 @@ done:
   return st;
 }
 
-static vg_status put_page(FILE *to, const struct vg_adapt *a,
+static vg_status put_page(struct vg_output *to, const struct vg_adapt *a,
                           struct vg_error *err)
 {
   const struct names all = names_of(a);
   vg_status st = VG_OK;
 
-  fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<title>Adaptation: ",
-        to);
-  vg_markup(to, a->stem);
-  fprintf(to,
-          "</title><style>%s</style></head><body>\n<h1>Adaptation: ", style);
-  vg_markup(to, a->stem);
-  fputs("</h1>\n<p>Solver: <code>", to);
-  vg_markup(to, a->o->row.solver);
-  fputs("</code>. Fields of the metric: <code>", to);
-  vg_markup(to, a->o->row.field);
-  fputs("</code>.</p>\n", to);
+  vg_output_text(to, "<!DOCTYPE html>\n<html lang=\"en\"><head>"
+                     "<meta charset=\"utf-8\"><title>Adaptation: ");
+  vg_output_markup(to, a->stem);
+  vg_output_format(to, "</title><style>%s</style></head><body>\n<h1>", style);
+  vg_output_text(to, "Adaptation: ");
+  vg_output_markup(to, a->stem);
+  vg_output_text(to, "</h1>\n<p>Solver: <code>");
+  vg_output_markup(to, a->o->row.solver);
+  vg_output_text(to, "</code>. Fields of the metric: <code>");
+  vg_output_markup(to, a->o->row.field);
+  vg_output_text(to, "</code>.</p>\n");
   put_table(to, a, &all);
   put_notes(to, a);
   for (size_t k = 0; k < all.n && st >= 0; k++)
     st = put_figure(to, a, all.name[k], err);
-  fputs("</body></html>\n", to);
+  vg_output_text(to, "</body></html>\n");
   return st;
 }
 
 vg_status vg_adapt_write_page(const struct vg_adapt *a, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
-  char *text = NULL, *path = NULL;
-  size_t size = 0;
-  FILE *to = vg_text_open(&text, &size);
+  char *path = NULL;
   vg_status st;
 
-  if (!to) return vg_fail_memory(err, "the page of the loop");
-  st = put_page(to, a, err);
-  if (fclose(to) && st >= 0) st = vg_fail_memory(err, "the page of the loop");
-  VG_TRY(st);
   VG_TRY(vg_adapt_path(a->dir, "adapt.html", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
-  vg_output_text(&out, text);
+  VG_TRY(put_page(&out, a, err));
   st = vg_output_commit(&out, err);
 done:
   vg_output_release(&out);
   free(path);
-  free(text);
   return st;
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "cli/http/inside.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "run/common/text.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/serve/form.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
 #include "io/mesh/format.h"

@@ -10,7 +10,7 @@
 #include "cli/http/inside.h"
 #include "base/memory.h"
 #include "cli/serve/figures.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/rows.h"
 #include "run/settings/deck.h"

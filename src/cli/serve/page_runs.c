@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "cli/serve/figures.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "run/common/json_build.h"
 #include "run/common/text.h"

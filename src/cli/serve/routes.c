@@ -10,7 +10,7 @@
 #include "cli/serve/assets.h"
 #include "cli/serve/figures.h"
 #include "cli/serve/form.h"
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
 #include "run/common/json_build.h"

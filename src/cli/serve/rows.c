@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 
 #define VALUE_SIZE (2 * VG_LIST_MAX + 4)
 #define MOST_COLUMNS 64

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "cli/plot/plot.h"
 #include "cli/sweep/sweep.h"
-#include "io/stream/stream.h"
+#include "io/stream/csv.h"
 #include "partition/model/model.h"
 #include "partition/model/rates.h"
 #include "run/common/json_build.h"
@@ -99,18 +99,6 @@ static const char *state_of(const struct vg_sweep_case *c)
 
 /* --- csv ----------------------------------------------------------------- */
 
-static void put_quoted(struct vg_output *out, const char *text)
-{
-  char one[2] = { 0, 0 };
-
-  vg_output_text(out, "\"");
-  for (; *text; text++) {
-    one[0] = *text;
-    vg_output_text(out, *text == '"' ? "\"\"" : one);
-  }
-  vg_output_text(out, "\"");
-}
-
 static void put_number(struct vg_output *out, double v)
 {
   vg_output_text(out, ",");
@@ -123,7 +111,7 @@ static void put_row(struct vg_output *out, const struct vg_sweep *s,
   double v[N_VALUE];
 
   values_of(s, c, v);
-  put_quoted(out, c->name);
+  vg_csv_put(out, c->name);
   vg_output_text(out, ",");
   if (c->bisections >= 0) vg_output_int(out, c->bisections);
   vg_output_text(out, ",");
@@ -136,7 +124,7 @@ static void put_row(struct vg_output *out, const struct vg_sweep *s,
     put_number(out, c->has_timeline ? c->t.seconds[i] : NAN);
   vg_output_format(out, ",%s,%s,", c->way < 0 ? "" : vg_ways[c->way].name,
                    c->digest);
-  put_quoted(out, c->note);
+  vg_csv_put(out, c->note);
   vg_output_text(out, "\n");
 }
 

@@ -132,3 +132,15 @@ done:
   free(own);
   return st;
 }
+
+void vg_csv_put(struct vg_output *out, const char *text)
+{
+  char one[2] = { 0, 0 };
+
+  vg_output_text(out, "\"");
+  for (; *text; text++) {
+    one[0] = *text;
+    vg_output_text(out, *text == '"' ? "\"\"" : one);
+  }
+  vg_output_text(out, "\"");
+}

@@ -21,4 +21,7 @@ void vg_csv_names(struct vg_input *in, char *out, size_t size);
 vg_status vg_csv_column(struct vg_input *in, const char *name, size_t *n,
                         double **value, struct vg_error *err);
 
+/** Write text in double quotes; quotes in it are doubled. */
+void vg_csv_put(struct vg_output *out, const char *text);
+
 #endif

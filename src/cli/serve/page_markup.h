@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* cli/common/page_markup.h: escaping of text in pages. */
-#ifndef VG_CLI_COMMON_PAGE_MARKUP_H
-#define VG_CLI_COMMON_PAGE_MARKUP_H
+/* Private to cli/serve: escaping of text in pages. */
+#ifndef VG_CLI_SERVE_MARKUP_H
+#define VG_CLI_SERVE_MARKUP_H
 
 #include <stddef.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #define _GNU_SOURCE
-#include "cli/common/page_markup.h"
+#include "cli/serve/page_markup.h"
 
 #include <stdlib.h>
 #include <string.h>
