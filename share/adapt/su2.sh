@@ -8,6 +8,7 @@
 # cycle gets a copy of it, runs SU2_CFD on the .su2 mesh, and leaves
 #
 #     solution.csv  the restart file, in the order of the points of the mesh
+#     wall.vtu      surface_flow.vtu
 #     outputs.csv   the last line of history.csv
 #
 # The deck needs "su2,b8.ugrid" in the setting write: the metric is computed on
@@ -28,7 +29,7 @@ command -v SU2_CFD >/dev/null || die "SU2_CFD is not found: set PATH"
 
 # Settings of CONFIG, except those that the loop sets.
 own='MESH_FILENAME|MESH_FORMAT|RESTART_FILENAME|CONV_FILENAME|TABULAR_FORMAT'
-own="$own|OUTPUT_FILES|RESTART_SOL"
+own="$own|OUTPUT_FILES|RESTART_SOL|SURFACE_FILENAME"
 {
   grep -vE "^[ \t]*($own)[ \t]*=" "$config" || true
   echo "MESH_FILENAME= $stem.su2"
@@ -37,7 +38,8 @@ own="$own|OUTPUT_FILES|RESTART_SOL"
   echo "RESTART_FILENAME= restart_flow"
   echo "CONV_FILENAME= history"
   echo "TABULAR_FORMAT= CSV"
-  echo "OUTPUT_FILES= RESTART_ASCII, PARAVIEW"
+  echo "SURFACE_FILENAME= surface_flow"
+  echo "OUTPUT_FILES= RESTART_ASCII, PARAVIEW, SURFACE_PARAVIEW"
 } >"$folder/$stem.cfg"
 cd "$folder"
 if [ "$ranks" -gt 1 ]; then mpirun -n "$ranks" SU2_CFD "$stem.cfg"
@@ -58,3 +60,4 @@ if [ -e history.csv ]; then
     }' history.csv >outputs.csv
 fi
 mv restart_flow.csv solution.csv
+[ ! -e surface_flow.vtu ] || cp surface_flow.vtu wall.vtu

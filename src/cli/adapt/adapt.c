@@ -97,10 +97,6 @@ static vg_status check_row(const struct vg_adapt_row *r, struct vg_error *err)
     return vg_fail(err, VG_ERR_INPUT,
                    "no solver: give the program by --solver or in the table "
                    "adapt of the deck");
-  if (!*r->field)
-    return vg_fail(err, VG_ERR_INPUT,
-                   "no field: give the fields that the metric resolves by "
-                   "--field or in the table adapt of the deck");
   if (r->cells < 1 || r->cells_ratio <= 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "adapt: cells %g and cells_ratio %g must be at least 1 and "
@@ -191,8 +187,8 @@ static int take_cycle(const json_t *o, struct vg_adapt_cycle *c)
   const json_t *steps = json_object_get(o, "seconds");
   int goes_on = json_is_object(o);
 
-  for (int k = c->number > 1 ? 0 : VG_ADAPT_MESH; k < VG_ADAPT_N; k++) {
-    const double s = number_at(steps, step_names[k]);
+  for (int k = 0; k < VG_ADAPT_N; k++) {
+    const double s = c->is_done[k] ? 0 : number_at(steps, step_names[k]);
 
     goes_on = goes_on && isfinite(s);
     c->is_done[k] = goes_on;
@@ -300,7 +296,7 @@ static vg_status make_cycles(struct vg_adapt *a, struct vg_error *err)
 
     *c = (struct vg_adapt_cycle){ .number = (int)i + 1, .attempt = 1 };
     c->requested = c->cells = c->points = c->field_cells = c->angle_min = NAN;
-    c->is_done[VG_ADAPT_METRIC] = !i;
+    c->is_done[VG_ADAPT_METRIC] = !vg_adapt_has_metric(a, c);
     snprintf(name, sizeof name, "cycle-%zu", i + 1);
     st = vg_adapt_path(a->dir, name, &c->dir, err);
   }

@@ -31,7 +31,8 @@ struct vg_adapt_options {
   char **extra; /* [n_extra] for vanguard mesh */
 };
 
-/* Steps of a cycle, in their order. The first cycle has no metric. */
+/* Steps of a cycle, in their order. The first cycle has no metric, and without
+ * a field no cycle has one. */
 enum vg_adapt_step {
   VG_ADAPT_METRIC,
   VG_ADAPT_MESH,
@@ -64,6 +65,12 @@ struct vg_adapt {
   size_t n;
   struct vg_adapt_cycle *cycle; /* [n] */
 };
+
+static inline int vg_adapt_has_metric(const struct vg_adapt *a,
+                                      const struct vg_adapt_cycle *c)
+{
+  return c->number > 1 && *a->o->row.field;
+}
 
 /** Paths, cycles and settings; the finished steps of an earlier call from
  * adapt.json. VG_ERR_INPUT: a setting is missing, or adapt.json belongs to a

@@ -21,6 +21,7 @@
 static const char *const solution_names[] = { "solution.vtu", "solution.csv",
                                               "solution.solb", "solution.sol" };
 enum { N_SOLUTION = sizeof solution_names / sizeof *solution_names };
+static const char *const wall_names[2] = { "wall.vtu", "wall.vtp" };
 
 /* --- child processes ------------------------------------------------------ */
 
@@ -102,6 +103,14 @@ static int has_file(const char *folder, const char *file)
   there = !access(path, R_OK);
   free(path);
   return there;
+}
+
+/* The skin friction on the walls of a solution; NULL: none. */
+static const char *wall_of(const struct vg_adapt_cycle *c)
+{
+  return has_file(c->dir, wall_names[0]) ? wall_names[0]
+       : has_file(c->dir, wall_names[1]) ? wall_names[1]
+                                         : NULL;
 }
 
 /* --- metric --------------------------------------------------------------- */
@@ -203,12 +212,14 @@ static vg_status mesh_line(const struct vg_adapt *a,
   if (o->deck) VG_TRY(add_two(w, "--deck", o->deck, err));
   VG_TRY(vg_words_add(w, "--json", err));
   if (o->threads) VG_TRY(vg_words_pair(w, "--threads", o->threads, err));
-  if (c->number > 1) {
+  if (vg_adapt_has_metric(a, c)) {
     metric_name(c->attempt, name);
     VG_TRY(add_path(w, "--sizes", c->dir, name, err));
     VG_TRY(add_two(w, "--surface-sizes", "no", err));
     VG_TRY(add_two(w, "--growth", "2", err));
   }
+  if (c->number > 1 && wall_of(c - 1))
+    VG_TRY(add_path(w, "--first-from", (c - 1)->dir, wall_of(c - 1), err));
   VG_TRY(add_path(w, "--run-dir", c->dir, kept, err));
   if (vg_store_has_run(w->word[w->n - 1], NULL) >= 0)
     VG_TRY(vg_words_add(w, "--resume", err));
@@ -381,11 +392,12 @@ done:
 /* Results of an earlier solver that failed must not count as new ones. */
 static void remove_results(const struct vg_adapt_cycle *c)
 {
-  static const char *const other[] = { "outputs.csv" };
+  const char *const other[] = { "outputs.csv", wall_names[0], wall_names[1] };
   char *path;
 
-  for (int i = 0; i < N_SOLUTION + 1; i++) {
-    const char *name = i < N_SOLUTION ? solution_names[i] : other[0];
+  for (int i = 0; i < N_SOLUTION + 3; i++) {
+    const char *name = i < N_SOLUTION ? solution_names[i]
+                                      : other[i - N_SOLUTION];
 
     if (vg_adapt_path(c->dir, name, &path, NULL) < 0) continue;
     unlink(path);
@@ -438,10 +450,16 @@ static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                  "cycle %d: the solver ended with status %d: %s; its log is "
                  "%s/solver.log",
                  c->number, status, note, c->dir);
-  else if (!solution_of(c))
+  else if (*a->o->row.field && !solution_of(c))
     st = vg_fail(err, VG_ERR_INPUT,
                  "cycle %d: the solver left no solution.vtu, .csv, .solb or "
                  ".sol in %s",
+                 c->number, c->dir);
+  else if (!*a->o->row.field && !wall_of(c))
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "cycle %d: nothing to adapt to: give the fields that the "
+                 "metric resolves by --field or in the table adapt of the "
+                 "deck, or a solver that leaves wall.vtu or wall.vtp in %s",
                  c->number, c->dir);
   else st = read_outputs(c, err);
 done:

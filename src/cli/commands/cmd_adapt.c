@@ -208,7 +208,7 @@ static const struct argp_option options[] = {
     2 },
   { "field", KEY_COLUMN + 1, "LIST", 0,
     "Fields of the solution that the metric resolves, as for 'vanguard "
-    "metric'",
+    "metric'; without it only first heights follow the solution",
     2 },
   { "norm", KEY_COLUMN + 2, "P", 0, "Norm L^P of the error [default 2]", 2 },
   { "cycles", KEY_COLUMN + 3, "N", 0,

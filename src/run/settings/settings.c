@@ -348,7 +348,7 @@ static const struct vg_param adapt_columns[] = {
        "arguments, separated by blanks; required"),
   LIST("field", field,
        "Fields of the solution that the metric resolves, separated by commas; "
-       "required"),
+       "\"\": no metric, only first heights follow the solution"),
   LIST("norm", norm, "Norm L^P of the error, 1 to 16 or max; \"\": 2"),
   { "cycles", AT(cycles), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
     .unit = "cycles", .help = "Number of meshes and solutions; 0: 4" },

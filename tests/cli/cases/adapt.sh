@@ -123,9 +123,9 @@ says c/adapt.html "has growth 1.2 and aspect_max 5"
 vanguard adapt -p box.lb8.ugrid -o d
 exits 1
 says err "no solver"
-vanguard adapt -p box.lb8.ugrid -o d --solver true
+vanguard adapt -p box.lb8.ugrid -o d2 --solver true
 exits 1
-says err "no field"
+says err "nothing to adapt to: give the fields"
 vanguard adapt -p box.lb8.ugrid -o d --solver true --field q -- --write mesh
 exits 1
 says err "the solver left no solution.vtu"
