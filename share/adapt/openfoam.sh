@@ -51,11 +51,13 @@ outputs() {
   local file
   for file in "$case"/postProcessing/*/*/*.dat; do
     [ -e "$file" ] || continue
+    # Columns are padded with blanks and separated by tabs; vectors have blanks.
     name=$(basename "$(dirname "$(dirname "$file")")") awk '
-      /^#/ { sub(/^#[ \t]*/, ""); n = split($0, column, /[ \t]+/); next }
+      { gsub(/ *\t */, "\t"); sub(/ +$/, "") }
+      /^#/ { sub(/^# */, ""); n = split($0, column, "\t"); next }
       { last = $0 }
       END {
-        if (split(last, value, /[ \t]+/) < n) n = 0
+        if (split(last, value, "\t") < n) n = 0
         for (i = 2; i <= n; i++)
           if (value[i] ~ /^[-+.0-9eE]+$/)
             print ENVIRON["name"] ":" column[i] "," value[i]
