@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Notes about first heights that are implausible for the size of the walls.
- * Declared in run/input/layers.h. */
+/* Notes about the layers that are planned. Declared in run/input/layers.h. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -8,6 +7,8 @@
 
 #include "layers/columns/growth_law.h"
 #include "run/input/layers.h"
+
+#define SHOWN_PATCHES 20
 
 /* L26: relative to the largest extent of the walls. On a flat plate of that
  * length, y+ 0.6 at a Reynolds number of 1e9 is 2e-8. */
@@ -107,4 +108,86 @@ void vg_note_first_heights(const struct vg_layer_stage *s,
     note_length(s, b, extent);
   else if (i != SIZE_MAX) note_first(s, b, i, extent);
   if (b->notes->n > n) to_front(b->notes);
+}
+
+/* Number of walls, and their numbers as " 3 4 7". `odd`: only those with a
+ * condition that is not viscous. */
+static size_t wall_numbers(const struct vg_layer_stage *s,
+                           const struct vg_mesh *m, int odd, char *list,
+                           size_t size)
+{
+  size_t n = 0, at = 0;
+
+  *list = 0;
+  for (size_t i = 0; i < s->n_patch; i++) {
+    const struct vg_patch *p = &m->patch[i];
+
+    if (s->reason[i] == VG_WALL_NOT || s->reason[i] == VG_WALL_EXTENDED ||
+        (odd && (vg_is_viscous(p) || p->bc == VG_BC_NONE)))
+      continue;
+    if (n++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, size - at, " %d", (int)p->id);
+  }
+  if (n > SHOWN_PATCHES) snprintf(list + at, size - at, " ...");
+  return n;
+}
+
+void vg_note_missing_first(const struct vg_layer_stage *s,
+                           struct vg_boundary *b)
+{
+  char list[12 * SHOWN_PATCHES + 24];
+  size_t n_wall = wall_numbers(s, &b->surface, 0, list, sizeof list);
+
+  vg_note(b->notes,
+          "no layers grow on %zu viscous wall%s (patch%s%s), because no first "
+          "height is given: give --first, or --y-plus with --reynolds and "
+          "--reference-length",
+          n_wall, n_wall > 1 ? "s" : "", n_wall > 1 ? "es" : "", list);
+}
+
+void vg_note_layers(const struct vg_layer_stage *s, struct vg_boundary *b)
+{
+  const struct vg_layer_settings *l = &b->read->settings.layer;
+  double ratio = isnan(l->ratio) ? 0 : l->ratio, cap = vg_layer_cap(l->cap);
+  char list[12 * SHOWN_PATCHES + 24];
+  size_t n = 0, n_odd = wall_numbers(s, &b->surface, 1, list, sizeof list);
+
+  for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
+  if (n_odd)
+    vg_note(b->notes,
+            "%zu patch%s layers but a boundary condition that is not viscous: "
+            "number%s",
+            n_odd, n_odd > 1 ? "es have" : " has", list);
+  if (n && b->flow.kind == VG_FLOW_INTERNAL)
+    vg_note(b->notes,
+            "no patch has a boundary condition: layers grow on %zu of %zu "
+            "patches, but not on inlets, outlets, caps and outer boundaries "
+            "around bodies; name the walls with --walls, --slip or the table "
+            "layers if that is wrong",
+            n, s->n_patch);
+  else if (n)
+    vg_note(b->notes, "no patch has a boundary condition: layers grow on the "
+                      "whole body; name the walls with --walls, --slip or the "
+                      "table layers if that is wrong");
+  if (!l->by_source && l->y_plus > 0)
+    vg_note(b->notes,
+            "y+ %g at Reynolds number %g, based on the length %g: first "
+            "height %.6g",
+            l->y_plus, l->reynolds, l->length,
+            vg_first_height(l->y_plus, l->reynolds, l->length));
+  if (l->scale_rule != VG_GROWTH_LAW_KEPT)
+    vg_note(b->notes,
+            "scale_layers: first heights are multiplied by %.4g, growth "
+            "ratios of the layers are raised to the power %.4g, numbers of "
+            "layers are divided by that power, and numbers of constant layers "
+            "are divided by %.4g",
+            b->read->settings.scale,
+            vg_growth_law_power((enum vg_growth_law_rule)l->scale_rule,
+                                b->read->settings.scale),
+            b->read->settings.scale);
+  if (ratio > cap)
+    vg_note(b->notes,
+            "ratio %g is larger than layer_cap %g, so the growth is "
+            "limited to layer_cap",
+            ratio, cap);
 }
