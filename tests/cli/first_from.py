@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Wall shear of a made-up solution, and first heights measured in a mesh.
 
-    first_from.py write SURFACE.lb8.ugrid SOLUTION.vtu WALLS FIELD FUNCTION
+    first_from.py write MESH.lb8.ugrid SOLUTION.vtu WALLS FIELD FUNCTION
     first_from.py measure MESH.b8.ugrid WALLS FUNCTION
 
 WALLS are numbers of patches, as in 1,2. FUNCTION of x, y, z and the functions
-of `math` is the skin friction coefficient; as a tuple it is a vector. For
+of `math` is the skin friction coefficient; as a tuple it is a vector. If the mesh
+has tetrahedra, the solution consists of them, with zeros away from the walls;
+otherwise of the triangles of the walls, as a .vtu or .vtp. For
 `measure` it is the first height, and the prisms on the walls are compared with
 it: the output is the share of the wall points, in per cent, whose height is
 within 5 % of it, and the number of these points, without those on edges.
@@ -17,7 +19,8 @@ import sys
 
 
 def read(path):
-    """Points, triangles of the boundary with their patches, and prisms."""
+    """Points, triangles of the boundary with their patches, tetrahedra and
+    prisms."""
     order = "little" if ".lb8." in path else "big"
     with open(path, "rb") as f:
         def get(kind, n):
@@ -31,11 +34,14 @@ def read(path):
         tri = get("i", 3 * n_tri)
         get("i", 4 * n_quad)
         ids = get("i", n_tri + n_quad)
-        get("i", 4 * n_tet + 5 * n_pyr)
+        tet = get("i", 4 * n_tet)
+        get("i", 5 * n_pyr)
         pri = get("i", 6 * n_pri)
     return ([tuple(x[i:i + 3]) for i in range(0, len(x), 3)],
             [(tuple(v - 1 for v in tri[3 * i:3 * i + 3]), ids[i])
              for i in range(n_tri)],
+            [tuple(v - 1 for v in tet[i:i + 4])
+             for i in range(0, len(tet), 4)],
             [tuple(v - 1 for v in pri[i:i + 6])
              for i in range(0, len(pri), 6)])
 
@@ -53,27 +59,34 @@ def data(f, kind, name, components, rows):
     f.write("</DataArray>\n")
 
 
-def write(surface, path, walls, field, text):
-    x, tri, _ = read(surface)
+def write(mesh, path, walls, field, text):
+    x, tri, tet, _ = read(mesh)
     tri = [t for t, patch in tri if patch in walls]
-    number = {p: i for i, p in enumerate(sorted({p for t in tri for p in t}))}
-    values = [function(text, x[p]) for p in number]
+    wall = {p for t in tri for p in t}
+    cells = tet or tri
+    number = {p: i for i, p in enumerate(sorted({p for t in cells for p in t}))}
+    values = [function(text, x[p]) if p in wall else 0 for p in number]
     values = [v if isinstance(v, tuple) else (v,) for v in values]
+    kind, tag, count = (("PolyData", "Polys", "NumberOfPolys")
+                        if path.endswith(".vtp") else
+                        ("UnstructuredGrid", "Cells", "NumberOfCells"))
+    width = len(cells[0])
     with open(path, "w") as f:
-        f.write('<VTKFile type="UnstructuredGrid" version="1.0" '
-                f'byte_order="LittleEndian"><UnstructuredGrid><Piece '
-                f'NumberOfPoints="{len(number)}" NumberOfCells="{len(tri)}">\n'
+        f.write(f'<VTKFile type="{kind}" version="1.0" '
+                f'byte_order="LittleEndian"><{kind}><Piece '
+                f'NumberOfPoints="{len(number)}" {count}="{len(cells)}">\n'
                 '<PointData>\n')
         data(f, "Float64", field, len(values[0]), values)
         f.write("</PointData><Points>\n")
         data(f, "Float64", "Points", 3, (x[p] for p in number))
-        f.write("</Points><Cells>\n")
+        f.write(f"</Points><{tag}>\n")
         data(f, "Int32", "connectivity", 1,
-             ((number[p],) for t in tri for p in t))
+             ((number[p],) for t in cells for p in t))
         data(f, "Int32", "offsets", 1,
-             ((3 * i + 3,) for i in range(len(tri))))
-        data(f, "UInt8", "types", 1, ((5,) for _ in tri))
-        f.write("</Cells></Piece></UnstructuredGrid></VTKFile>\n")
+             ((width * (i + 1),) for i in range(len(cells))))
+        if tag == "Cells":
+            data(f, "UInt8", "types", 1, ((10 if tet else 5,) for _ in cells))
+        f.write(f"</{tag}></Piece></{kind}></VTKFile>\n")
 
 
 def normal(x, base):
@@ -93,7 +106,7 @@ def dot(a, b):
 def measure(mesh, walls, text):
     """The height is the distance of the top from the plane of a triangle, at
     points whose triangles have nearly the same plane."""
-    x, tri, prisms = read(mesh)
+    x, tri, _, prisms = read(mesh)
     faces = {frozenset(t) for t, _ in tri}
     wall = {p for t, patch in tri if patch in walls for p in t}
     normals, heights = {}, {}

@@ -422,7 +422,7 @@ double vg_wall_shear_side(const struct vg_wall_shear *w,
 
   for (size_t t = 0; t < m->n_tri; t++) {
     const uint32_t *v = m->tri[t];
-    double a[3], b[3], n[3], x[3], to[3];
+    double a[3], b[3], n[3], x[3], to[3], cosine;
     struct search s = { w, x, NULL, 0, INFINITY, UINT32_MAX };
 
     if (!on[t]) continue;
@@ -433,8 +433,10 @@ double vg_wall_shear_side(const struct vg_wall_shear *w,
     vg_box_tree_approach(&w->tree, x, enter, leaf, &s);
     if (s.tri == UINT32_MAX) continue;
     normal_of(w, s.tri, to);
+    cosine = vg_unit(to) > 0 ? vg_dot(n, to) / vg_norm(n) : 0;
+    if (!(fabs(cosine) > FACING)) continue;
     all += vg_norm(n);
-    sum += vg_dot(n, to) > 0 ? vg_norm(n) : -vg_norm(n);
+    sum += copysign(vg_norm(n), cosine);
   }
   return all > 0 ? sum / all : 0;
 }

@@ -33,6 +33,7 @@ void vg_wall_shear_box(const struct vg_wall_shear *w, double lo[3],
 
 /** Part of the area of a surface whose nearest walls have the orientation of
  * the surface, less the part with the opposite one, over their sum: -1 to 1.
+ * Triangles whose nearest walls are nearly normal to them do not count.
  * on: [m->n_tri] 1: the triangle counts. O(n log n). */
 double vg_wall_shear_side(const struct vg_wall_shear *w,
                           const struct vg_mesh *m, const uint8_t *on);

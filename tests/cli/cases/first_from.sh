@@ -39,6 +39,24 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   same tets/wing.b8.ugrid ranks/wing.b8.ugrid
 fi
 
+# The same walls as polygons, and as the boundary of cells.
+vanguard demo sphere --cells 20000 --out .
+exits 0
+vanguard mesh -q -p sphere --layers no --write lb8.ugrid --out cells
+exits 0
+walls=$(awk '$2 == 4 { printf "%s%s", n++ ? "," : "", $1 }' sphere.mapbc)
+first_from write cells/sphere.lb8.ugrid cells.vtu "$walls" cf "0.01 + 0.005 * x"
+first_from write sphere.lb8.ugrid faces.vtp "$walls" cf "0.01 + 0.005 * x"
+flow="--y-plus 1 --reynolds 1e6 --reference-length 1"
+for file in cells.vtu faces.vtp; do
+  vanguard mesh -q -p sphere $flow --write b8.ugrid --first-from "$file" \
+    --out "${file%.*}2"
+  exits 0
+  says out "follow from the skin friction 'cf' of $file"
+  lacks out "are too far from the walls"
+done
+same cells2/sphere.b8.ugrid faces2/sphere.b8.ugrid
+
 # The same values as a vector, which is a stress with a factor; y+ 2 on one
 # patch, and on another a first height of its own, which lowers those of its
 # neighbours.
