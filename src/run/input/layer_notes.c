@@ -175,6 +175,9 @@ void vg_note_layers(const struct vg_layer_stage *s, struct vg_boundary *b)
             "height %.6g",
             l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
+  if (!*l->first_from && (*l->first_field || l->first_scale > 0))
+    vg_note(b->notes, "first_field and first_scale have no effect without "
+                      "first_from");
   if (l->scale_rule != VG_GROWTH_LAW_KEPT)
     vg_note(b->notes,
             "scale_layers: first heights are multiplied by %.4g, growth "
