@@ -267,10 +267,10 @@ static vg_status smooth(struct work *w, struct vg_error *err)
 static void join_sides(struct vg_point_heights *h)
 {
   for (size_t i = 1; i < h->n; i++) {
-    struct vg_point_height *a = &h->item[i - 1], *b = &h->item[i];
+    const struct vg_point_height *a = &h->item[i - 1];
+    struct vg_point_height *b = &h->item[i];
 
-    if (memcmp(a->x, b->x, sizeof a->x) != 0) continue;
-    *b = *a;
+    if (!(vg_distance2(a->x, b->x) > 0)) *b = *a;
   }
 }
 

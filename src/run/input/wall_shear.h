@@ -31,10 +31,14 @@ const char *vg_wall_shear_field(const struct vg_wall_shear *w);
 void vg_wall_shear_box(const struct vg_wall_shear *w, double lo[3],
                        double hi[3]);
 
-/** Part of the area of a surface whose nearest walls have the orientation of
- * the surface, less the part with the opposite one, over their sum: -1 to 1.
- * Triangles whose nearest walls are nearly normal to them do not count.
- * on: [m->n_tri] 1: the triangle counts. O(n log n). */
+/** Whether the walls have the orientation of a surface, by a sample of its
+ * triangles and the nearest wall of each: the area of those that agree less
+ * that of the others, over their sum, from -1 to 1. Triangles that are nearly
+ * normal to the nearest wall do not count.
+ *
+ * @param on  [m->n_tri] 1: the triangle counts
+ *
+ * O(n_tri + log n) for n walls. */
 double vg_wall_shear_side(const struct vg_wall_shear *w,
                           const struct vg_mesh *m, const uint8_t *on);
 

@@ -57,6 +57,20 @@ for file in cells.vtu faces.vtp; do
 done
 same cells2/sphere.b8.ugrid faces2/sphere.b8.ugrid
 
+# A run with another solution cannot be resumed.
+vanguard mesh -q -p sphere $flow --first-from faces.vtp --out run1 \
+  --write b8.ugrid --run-dir run --keep-run
+exits 0
+vanguard mesh -q -p sphere $flow --first-from faces.vtp --out run2 \
+  --write b8.ugrid --run-dir run --resume --keep-run
+exits 0
+same run1/sphere.b8.ugrid run2/sphere.b8.ugrid
+first_from write sphere.lb8.ugrid faces.vtp "$walls" cf "0.01 + 0.004 * x"
+vanguard mesh -q -p sphere $flow --first-from faces.vtp --out run3 \
+  --write b8.ugrid --run-dir run --resume
+exits 1
+says err "cannot be resumed: input or options have changed"
+
 # The same values as a vector, which is a stress with a factor; y+ 2 on one
 # patch, and on another a first height of its own, which lowers those of its
 # neighbours.
