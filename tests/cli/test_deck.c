@@ -171,6 +171,9 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
   s.layer = (struct vg_layer_settings){ .grow = VG_ANSWER_YES,
                                         .first = 1e-6,
+                                        .first_field = "wall \"shear\" 2",
+                                        .first_scale = 0.02,
+                                        .first_bound = 2,
                                         .ratio = NAN,
                                         .rate1 = 0.15,
                                         .rate2 = 0.02,
@@ -275,6 +278,8 @@ static void messages_name_line_and_remedy(void **state)
   refuse("t\nwrite\n\001\n", "control character");
   refuse("t\nfirst y_plus\n1 1\n", "first and y_plus are both given");
   refuse("t\ny_plus\n1\n", "y_plus requires reynolds");
+  refuse("t\nfirst first_from\n1 a.vtu\n", "first and first_from are both");
+  refuse("t\nfirst_from\na.vtu\n", "first_from requires y_plus, reynolds");
   refuse("t\nreynolds\n1e6\n", "reference_length must be given together");
   refuse("t\nratio rate1\n1.2 0.2\n", "ratio and rates are both given");
   refuse("t\nlayer_cap\n0.5\n", "layer_cap is 0.5; it must be at least 1");

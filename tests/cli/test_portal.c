@@ -249,6 +249,11 @@ static void refuses(const char *name, const char *value, const char *why)
   struct vg_error err = VG_ERROR_INIT;
 
   put(&f, name, value);
+  if (!strcmp(name, "s.first_from")) { /* It requires these fields. */
+    put(&f, "s.y_plus", "1");
+    put(&f, "s.reynolds", "1e6");
+    put(&f, "s.reference_length", "1");
+  }
   assert_true(settings_of(&f, &s, &err) < 0);
   if (!strstr(err.text, why)) fail_msg("'%s' lacks '%s'", err.text, why);
   assert_string_equal(fault.field, name);
@@ -282,6 +287,7 @@ static void a_refused_form_names_the_field(void **state)
   snprintf(path, sizeof path, "%s/../other/secret.obj", scene.root);
   refuses("s.sizes", path, "not a path below");
   refuses("s.mapbc", path, "not a path below");
+  refuses("s.first_from", "/etc/passwd", "not a path below");
   /* Values that contradict each other: the first setting of the message. */
   refuses("s.y_plus", "1", "y_plus requires reynolds");
   refuses("s.constant_direction", "yes", "requires a split_direction");

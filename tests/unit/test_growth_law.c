@@ -141,6 +141,9 @@ static void y_plus_round_trip(void **state)
 
       assert_true(y > 0);
       assert_true(fabs(vg_y_plus(y, re, 2.5) / y_plus - 1) < 1e-14);
+      assert_true(
+        fabs(vg_y_plus_at(y, re, 2.5, 0.026 / pow(re, 1. / 7)) / y_plus - 1) <
+        1e-13);
       assert_true(fabs(vg_first_height(y_plus, re, 5) / y - 2) < 1e-14);
     }
   /* By hand: Re^(1/7) = 9.0582 for 5 million, c_f = 0.0028703, so that sqrt(c_f

@@ -167,6 +167,8 @@ static vg_status check_paths(const char *root, struct vg_settings *s,
                    "own installation; leave the setting empty");
   strcpy(fault->field, "s.sizes");
   VG_TRY(check_path(root, "sizes", s->sizes, err));
+  strcpy(fault->field, "s.first_from");
+  VG_TRY(check_path(root, "first_from", s->layer.first_from, err));
   strcpy(fault->field, "s.mapbc");
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
   fault->field[0] = 0;

@@ -504,13 +504,14 @@ struct grid {
   double *type, *end, *node;
 };
 
-static vg_status read_integers(const struct file *f, const char *name, size_t n,
-                               double **out, struct vg_error *err)
+static vg_status read_integers(const struct file *f, const char *section,
+                               const char *name, size_t n, double **out,
+                               struct vg_error *err)
 {
   struct array a;
-  vg_status st = find_array(f, "Cells", name, &a, err);
+  vg_status st = find_array(f, section, name, &a, err);
 
-  if (st >= 0) st = check_array(f, "Cells", &a, 1, 0, err);
+  if (st >= 0) st = check_array(f, section, &a, 1, 0, err);
   if (st < 0) return st;
   if (n > f->in->size * MOST_PACKED)
     return damaged(f, err,
@@ -521,27 +522,47 @@ static vg_status read_integers(const struct file *f, const char *name, size_t n,
   return read_array(f, &a, n, *out, err);
 }
 
+/* The types of polygons follow from their numbers of nodes; 7: a polygon. */
+static vg_status set_types(struct grid *g, size_t n, struct vg_error *err)
+{
+  g->type = vg_alloc(n, sizeof *g->type);
+  if (!g->type) return vg_fail_memory(err, "the cells of a VTK file");
+  for (size_t i = 0; i < n; i++) {
+    const double size = g->end[i] - (i ? g->end[i - 1] : 0);
+
+    g->type[i] = size == 3 ? 5 : size == 4 ? 9 : 7;
+  }
+  return VG_OK;
+}
+
+/* Cells of a .vtu, or polygons of a .vtp. */
 static vg_status read_grid(const struct file *f, struct grid *g,
                            struct vg_error *err)
 {
-  const char *piece = find_tag(f->text, f->end, "Piece");
+  const char *piece = find_tag(f->text, f->end, "Piece"), *in = "Cells";
   char word[32];
   int64_t n = 0;
   vg_status st = VG_OK;
 
-  if (!attribute(piece, f->end, "NumberOfCells", word, sizeof word))
-    return VG_OK;
+  if (!attribute(piece, f->end, "NumberOfCells", word, sizeof word)) {
+    in = "Polys";
+    if (!attribute(piece, f->end, "NumberOfPolys", word, sizeof word))
+      return VG_OK;
+  }
   if (!vg_parse_int(word, strlen(word), &n) || n < 0 || n >= UINT32_MAX)
-    return damaged(f, err, "NumberOfCells is not a number from 0 to 2^32 - 2");
-  if (!n || !find_tag(f->text, f->end, "Cells")) return VG_OK;
-  VG_TRY(read_integers(f, "types", (size_t)n, &g->type, err));
-  VG_TRY(read_integers(f, "offsets", (size_t)n, &g->end, err));
+    return damaged(f, err,
+                   "NumberOfCells (or NumberOfPolys) is not a number from 0 to "
+                   "2^32 - 2");
+  if (!n || !find_tag(f->text, f->end, in)) return VG_OK;
+  VG_TRY(read_integers(f, in, "offsets", (size_t)n, &g->end, err));
   for (int64_t i = 0; i < n; i++)
     if (!(g->end[i] >= (i ? g->end[i - 1] : 0)) || g->end[i] > 8e15)
       return damaged(f, err, "the offsets of the cells are not ascending");
   g->n = (size_t)n;
   g->n_node = (size_t)g->end[n - 1];
-  VG_TRY(read_integers(f, "connectivity", g->n_node, &g->node, err));
+  if (*in == 'C') VG_TRY(read_integers(f, in, "types", g->n, &g->type, err));
+  else VG_TRY(set_types(g, g->n, err));
+  VG_TRY(read_integers(f, in, "connectivity", g->n_node, &g->node, err));
 done:
   return st;
 }

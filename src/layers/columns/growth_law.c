@@ -131,6 +131,12 @@ double vg_y_plus(double y, double reynolds, double length)
   return y * reynolds * friction(reynolds) / length;
 }
 
+double vg_y_plus_at(double y, double reynolds, double length, double c_f)
+{
+  assert(c_f >= 0);
+  return y * reynolds * sqrt(0.5 * c_f) / length;
+}
+
 static double total_at(double delta1, int n_constant, int n, double rate)
 {
   struct vg_growth_law law = { delta1, rate, 0, INFINITY, n_constant };

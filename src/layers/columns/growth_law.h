@@ -50,6 +50,10 @@ double vg_first_height(double y_plus, double reynolds, double length);
 /** The inverse: y+ of a point at wall distance y. */
 double vg_y_plus(double y, double reynolds, double length);
 
+/** The same where the skin friction coefficient c_f = tau_w / (rho U^2 / 2) is
+ * known: y Re sqrt(c_f / 2) / L. */
+double vg_y_plus_at(double y, double reynolds, double length, double c_f);
+
 /** Growth rate (r1, with r2 = 0) for which n layers have the height `total`,
  * with a relative error below 1e-12. Returns a negative value if n layers of
  * thickness delta1 are already higher, and INFINITY if no rate suffices (all n

@@ -27,14 +27,18 @@ static int compare_place(const void *a, const void *b)
   return 0;
 }
 
-double *vg_point_height(const struct vg_point_heights *h, const double x[3])
+void vg_point_heights_sort(struct vg_point_heights *h)
 {
-  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0 };
-  struct vg_point_height *found;
+  qsort(h->item, h->n, sizeof *h->item, compare_height);
+}
 
-  if (!h->n) return NULL;
-  found = bsearch(&key, h->item, h->n, sizeof *h->item, compare_place);
-  return found ? &found->first : NULL;
+struct vg_point_height *vg_point_height(const struct vg_point_heights *h,
+                                        const double x[3])
+{
+  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0, -1 };
+
+  return h->n ? bsearch(&key, h->item, h->n, sizeof *h->item, compare_place)
+              : NULL;
 }
 
 /* A .surf may have a first height at each point. The heights are looked up by
@@ -64,9 +68,10 @@ vg_status vg_read_heights(struct vg_read *r, struct vg_error *err)
     if (!(a.spacing[i] > 0)) continue;
     for (int k = 0; k < 3; k++) to->x[k] = vg_units_of_file(r, m.point[i][k]);
     to->first = vg_units_of_file(r, a.spacing[i]);
+    to->friction = -1;
     r->heights.n++;
   }
-  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item, compare_height);
+  vg_point_heights_sort(&r->heights);
 done:
   vg_mesh_release(&m);
   vg_aflr_release(&a);

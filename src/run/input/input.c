@@ -22,6 +22,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
+#include "run/input/wall_shear.h"
 #include "run/input/mesh_unit.h"
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
@@ -87,6 +88,7 @@ static void release_read(struct vg_read *r)
   vg_project_release(&r->project);
   vg_size_samples_free(r->samples);
   vg_size_mesh_free(r->metrics);
+  vg_wall_shear_free(r->shear);
   vg_mesh_release(&r->surface);
   vg_cad_model_release(&r->model);
   free(r->heights.item);
@@ -95,6 +97,8 @@ static void release_read(struct vg_read *r)
 void vg_problem_forget_sizes(struct vg_problem *p)
 {
   vg_boundary_forget_gaps(&p->boundary);
+  vg_wall_shear_free(p->read.shear);
+  p->read.shear = NULL;
   if (!p->read.samples && !p->read.metrics) return;
   vg_size_samples_free(p->read.samples);
   vg_size_mesh_free(p->read.metrics);
@@ -714,6 +718,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   VG_TRY(vg_units_begin(r, err));
   VG_TRY(vg_units_end(r, NULL, err));
   VG_TRY(vg_read_sizes(r, err));
+  VG_TRY(vg_read_shear(r, err));
   VG_TRY(apply_conditions(r, err));
   VG_TRY(apply_patch_table(r, err));
   vg_note_symmetry(r->notes, &r->surface);
@@ -722,7 +727,8 @@ done:
   return st;
 }
 
-/* Reads the project, its sources and the file of sizes. */
+/* Reads the project, its sources, the file of sizes and that of the wall
+ * shear. */
 static vg_status read_asides(const struct vg_settings *asked, struct vg_read *r,
                              struct vg_error *err)
 {
@@ -735,7 +741,8 @@ static vg_status read_asides(const struct vg_settings *asked, struct vg_read *r,
     merge_layers(r);
   }
   VG_TRY(merge_sources(r, err));
-  st = vg_read_sizes(r, err);
+  VG_TRY(vg_read_sizes(r, err));
+  st = vg_read_shear(r, err);
 done:
   return st;
 }

@@ -31,16 +31,22 @@ struct vg_notes {
   char **text;
 };
 
-/** First heights at the points of a .surf, sorted by x, y, z. */
+/** First heights at points, sorted by x, y, z: those of a .surf, or those that
+ * follow from the wall shear of a solution. */
 struct vg_point_heights {
   size_t n;
   struct vg_point_height {
     double x[3], first;
+    double friction; /* Skin friction coefficient; negative: not known. */
   } * item;
 };
 
-/** First height at x; NULL if none is given. O(log n). */
-double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
+/** Sorts the points, of equal ones the least height first. */
+void vg_point_heights_sort(struct vg_point_heights *h);
+
+/** The first height at x; NULL if none is given. O(log n). */
+struct vg_point_height *vg_point_height(const struct vg_point_heights *h,
+                                        const double x[3]);
 
 /** Result of projecting a remeshed surface back onto its CAD model. */
 struct vg_put_back {
@@ -97,6 +103,8 @@ struct vg_read {
   struct vg_size_samples *samples; /* Sizes of the setting `sizes`; NULL:
                                       none. */
   struct vg_size_mesh *metrics;    /* Metrics of the setting `sizes`; NULL:
+                                      none. */
+  struct vg_wall_shear *shear;     /* Walls of the setting `first_from`; NULL:
                                       none. */
   struct vg_project project;       /* Empty without a .d3m. */
   struct vg_mesh surface;

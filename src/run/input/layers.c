@@ -12,12 +12,12 @@
 #include "run/settings/plan_options.h"
 
 #define DEFAULT_RATE 0.2 /* Common in RANS practice; growth 1.2. */
-#define SHOWN_PATCHES 20
 
 /* Growth laws that vary in space. By source: each of first height and rates is
  * interpolated by the code that computes the spacing, with the same weights,
  * with the value in place of the spacing (formats.md 1.7). By point: the first
- * height is that of a .surf, all other values are those of the patch. */
+ * height is that of a .surf or of first_from, all other values are those of the
+ * patch. */
 struct vg_layer_laws {
   struct vg_point_heights at; /* First heights; empty: by source. */
   size_t n;
@@ -48,6 +48,7 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
   vg_layers_release(&s->layers);
   vg_wall_fields_release(&s->fields);
   free(s->wall);
+  free(s->y_plus);
   free(s->missed);
   free(s->top);
   memset(s, 0, sizeof *s);
@@ -76,9 +77,9 @@ static void law_at(void *user, const double x[3], struct vg_growth_law *law)
 static void height_at(void *user, const double x[3], struct vg_growth_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const double *h = vg_point_height(&l->at, x);
+  const struct vg_point_height *h = vg_point_height(&l->at, x);
 
-  if (h && *h > 0) law->delta1 = *h * l->scale;
+  if (h && h->first > 0) law->delta1 = h->first * l->scale;
 }
 
 static int has_law(const struct vg_source *s)
@@ -150,7 +151,7 @@ static double choose(double own, double global)
   return isnan(own) ? global : own;
 }
 
-static double law_cap(double cap)
+double vg_layer_cap(double cap)
 {
   if (isnan(cap)) return VG_LAYER_CAP;
   return cap > 0 ? cap : INFINITY;
@@ -190,6 +191,17 @@ static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
   return VG_OK;
 }
 
+/* The rate of a patch belongs to one first height. */
+static vg_status no_rate(int32_t id, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_INPUT,
+                 "layers of patch %d: the growth ratio follows from number and "
+                 "total height of the layers, but first_from gives each point "
+                 "another first height; set ratio, and layer_count or "
+                 "layer_total",
+                 (int)id);
+}
+
 /* Sets the rates, scaled for the member of a grid family. */
 static vg_status set_rates(const struct vg_settings *s,
                            const struct vg_layer_row *r,
@@ -209,6 +221,7 @@ static vg_status set_rates(const struct vg_settings *s,
   } else if (!isnan(ratio)) {
     q->law.rate1 = ratio - 1;
   } else if (q->n_exact && q->total > 0) {
+    if (*l->first_from && isnan(r->first)) return no_rate(r->id, err);
     vg_growth_law_scale(&q->law, rule, s->scale, &q->n_max);
     return rate_for_total(q, r->id, &q->law.rate1, err);
   }
@@ -225,7 +238,7 @@ static vg_status make_request(const struct vg_settings *s,
 
   q->is_wall = 1;
   q->law.delta1 = first_height(l, r);
-  q->law.cap = law_cap(choose(r->cap, l->cap));
+  q->law.cap = vg_layer_cap(choose(r->cap, l->cap));
   q->law.n_constant = (int)(r->constant == VG_COUNT_NONE ? l->constant
                                                          : r->constant);
   q->n_exact = count > 0;
@@ -319,7 +332,7 @@ static vg_status make_requests(struct vg_layer_stage *s,
   const struct vg_mesh *m = &b->surface;
   vg_status st = VG_OK;
 
-  if (l->by_source) VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
+  if (l->by_source) VG_TRY(make_laws(set, vg_layer_cap(l->cap), &s->laws, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     struct vg_layer_row own = vg_settings_layer_row(set, m->patch[i].id);
     struct vg_layer_row row = vg_wall_layer_row(set, m, i);
@@ -385,11 +398,13 @@ static vg_status sort_heights(const struct vg_boundary *b, struct by_point *h,
       const uint32_t of = m->tri_patch[i];
 
       for (int k = 0; k < 3 && uses[of] == pass; k++) {
-        double *at = vg_point_height(&h->at, m->point[m->tri[i][k]]);
+        struct vg_point_height *at = vg_point_height(&h->at,
+                                                     m->point[m->tri[i][k]]);
 
-        if (at && !pass) *at = 0;
-        else if (at && *at > 0 && (h->least[of] == 0 || *at < h->least[of]))
-          h->least[of] = *at;
+        if (at && !pass) at->first = 0;
+        else if (at && at->first > 0 &&
+                 (h->least[of] == 0 || at->first < h->least[of]))
+          h->least[of] = at->first;
       }
     }
   free(uses);
@@ -411,41 +426,6 @@ static int first_is_known(const struct vg_layer_stage *s,
       return 0;
   }
   return 1;
-}
-
-/* Number of walls, and their numbers as " 3 4 7". `odd`: only those with a
- * condition that is not viscous. */
-static size_t wall_numbers(const struct vg_layer_stage *s,
-                           const struct vg_mesh *m, int odd, char *list,
-                           size_t size)
-{
-  size_t n = 0, at = 0;
-
-  *list = 0;
-  for (size_t i = 0; i < s->n_patch; i++) {
-    const struct vg_patch *p = &m->patch[i];
-
-    if (s->reason[i] == VG_WALL_NOT || s->reason[i] == VG_WALL_EXTENDED ||
-        (odd && (vg_is_viscous(p) || p->bc == VG_BC_NONE)))
-      continue;
-    if (n++ < SHOWN_PATCHES)
-      at += (size_t)snprintf(list + at, size - at, " %d", (int)p->id);
-  }
-  if (n > SHOWN_PATCHES) snprintf(list + at, size - at, " ...");
-  return n;
-}
-
-/* Note on walls that get no layers because no first height is given. */
-static void note_missing(const struct vg_layer_stage *s, struct vg_boundary *b)
-{
-  char list[12 * SHOWN_PATCHES + 24];
-  size_t n_wall = wall_numbers(s, &b->surface, 0, list, sizeof list);
-
-  vg_note(b->notes,
-          "no layers grow on %zu viscous wall%s (patch%s%s), because no first "
-          "height is given: give --first, or --y-plus with --reynolds and "
-          "--reference-length",
-          n_wall, n_wall > 1 ? "s" : "", n_wall > 1 ? "es" : "", list);
 }
 
 /* A wall with layers and without a condition gets a viscous one; otherwise it
@@ -470,53 +450,6 @@ static void give_conditions(const struct vg_layer_stage *s,
             "%zu patch%s with layers but without a boundary condition %s "
             "written as viscous (4, FUN3D 4000)",
             n, n > 1 ? "es" : "", n > 1 ? "are" : "is");
-}
-
-static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
-{
-  const struct vg_layer_settings *l = &b->read->settings.layer;
-  double ratio = choose(l->ratio, 0), cap = law_cap(l->cap);
-  char list[12 * SHOWN_PATCHES + 24];
-  size_t n = 0, n_odd = wall_numbers(s, &b->surface, 1, list, sizeof list);
-
-  for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
-  if (n_odd)
-    vg_note(b->notes,
-            "%zu patch%s layers but a boundary condition that is not viscous: "
-            "number%s",
-            n_odd, n_odd > 1 ? "es have" : " has", list);
-  if (n && b->flow.kind == VG_FLOW_INTERNAL)
-    vg_note(b->notes,
-            "no patch has a boundary condition: layers grow on %zu of %zu "
-            "patches, but not on inlets, outlets, caps and outer boundaries "
-            "around bodies; name the walls with --walls, --slip or the table "
-            "layers if that is wrong",
-            n, s->n_patch);
-  else if (n)
-    vg_note(b->notes, "no patch has a boundary condition: layers grow on the "
-                      "whole body; name the walls with --walls, --slip or the "
-                      "table layers if that is wrong");
-  if (!l->by_source && l->y_plus > 0)
-    vg_note(b->notes,
-            "y+ %g at Reynolds number %g, based on the length %g: first "
-            "height %.6g",
-            l->y_plus, l->reynolds, l->length,
-            vg_first_height(l->y_plus, l->reynolds, l->length));
-  if (l->scale_rule != VG_GROWTH_LAW_KEPT)
-    vg_note(b->notes,
-            "scale_layers: first heights are multiplied by %.4g, growth "
-            "ratios of the layers are raised to the power %.4g, numbers of "
-            "layers are divided by that power, and numbers of constant layers "
-            "are divided by %.4g",
-            b->read->settings.scale,
-            vg_growth_law_power((enum vg_growth_law_rule)l->scale_rule,
-                                b->read->settings.scale),
-            b->read->settings.scale);
-  if (ratio > cap)
-    vg_note(b->notes,
-            "ratio %g is larger than layer_cap %g, so the growth is "
-            "limited to layer_cap",
-            ratio, cap);
 }
 
 /* Layers of walls that end in the plane of another patch continue over that
@@ -583,6 +516,24 @@ static vg_status refuse_limits(const struct vg_settings *s,
                  "remove the limit or turn layers on");
 }
 
+/* Corrects the first heights by the solution of first_from. */
+static vg_status use_shear(struct vg_layer_stage *s, struct vg_boundary *b,
+                           struct vg_error *err)
+{
+  if (!b->read->shear) return VG_OK;
+  if (s->laws)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first_from corrects the heights of y_plus, but %s has "
+                   "first heights at its points; set file_layers to no or "
+                   "remove first_from",
+                   b->read->files.surface);
+  s->laws = vg_calloc(1, sizeof *s->laws);
+  if (!s->laws) return vg_fail_memory(err, "the laws of the layers");
+  s->laws->scale = 1; /* The requests have it. */
+  s->has_shear = 1;
+  return vg_first_from(s, b, &s->laws->at, err);
+}
+
 /* Plans the layers of the walls found. */
 static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
                             struct by_point *h, struct vg_error *err)
@@ -594,16 +545,17 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   VG_TRY(sort_heights(b, h, err));
   VG_TRY(vg_walls_find(b, s->reason, &n_wall, err));
   if (n_wall && !vg_walls_asked(set) && !first_is_known(s, b, h->least)) {
-    note_missing(s, b);
+    vg_note_missing_first(s, b);
     n_wall = 0;
   }
   if (!n_wall) return VG_OK;
   VG_TRY(make_requests(s, b, h, err));
   VG_TRY(extend_walls(s, b, err));
-  note_choice(s, b);
+  VG_TRY(use_shear(s, b, err));
+  vg_note_layers(s, b);
   give_conditions(s, b);
   set_options(s, set);
-  if (!s->laws) vg_note_first_heights(s, b);
+  if (!s->laws || s->has_shear) vg_note_first_heights(s, b);
   s->is_on = 1;
 done:
   return st;
@@ -757,6 +709,7 @@ static vg_status measure(struct vg_layer_stage *s,
                           &s->fields, err));
   VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
                            s->length, &s->n_wall, &s->wall, &s->all, err));
+  if (s->has_shear) VG_TRY(vg_first_measure(s, surface, &s->laws->at, err));
   s->time_measure += vg_display_now() - t;
 done:
   return st;

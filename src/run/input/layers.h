@@ -24,6 +24,25 @@ struct vg_limit_missed {
   double wanted, got;      /* wanted NAN: any layers at all. */
 };
 
+/* Range of y+ relative to the request that counts as reached. */
+#define VG_Y_PLUS_LOW 0.7
+#define VG_Y_PLUS_HIGH 1.3
+
+struct vg_y_plus_range {
+  double min, median, max;
+  double within; /* % of the points within the range above. */
+};
+
+/* y+ of the first heights on a patch, with the skin friction of first_from. */
+struct vg_y_plus_patch {
+  uint32_t patch; /* UINT32_MAX: the points of all patches. */
+  size_t n_point; /* Number of points with layers and skin friction. */
+  double wanted;  /* y_plus of the patch, times `scale` if scale_layers is set;
+                     NAN for all patches. */
+  struct vg_y_plus_range before, after; /* Of the heights by y_plus alone, and
+                                           of those in the mesh. */
+};
+
 struct vg_layer_laws; /* Growth laws by source, private to
                          run/input/layers.c. */
 
@@ -34,7 +53,8 @@ struct vg_layer_stage {
   struct vg_layer_request *request; /* [n_patch] requested layers. */
   struct vg_layer_limits *limit;    /* [n_patch] limits. */
   struct vg_layer_laws *laws;       /* NULL: laws by patch. */
-  double reynolds, length;          /* 0: no y+. */
+  int has_shear; /* 1: laws->at has the skin friction of first_from. */
+  double reynolds, length; /* 0: no y+. */
   struct vg_layer_options options;
   struct vg_layers layers;
   struct vg_layer_report report;
@@ -42,6 +62,8 @@ struct vg_layer_stage {
   struct vg_wall_fields fields;
   size_t n_wall;                     /* Number of measured patches. */
   struct vg_patch_layers *wall, all; /* wall: [n_wall]. */
+  struct vg_y_plus_patch *y_plus;    /* [n_wall + 1] as wall, then all; NULL:
+                                        no first_from. */
   size_t n_missed, cap_missed;
   struct vg_limit_missed *missed;
   struct vg_join_info join;
@@ -64,11 +86,42 @@ void vg_layer_stage_release(struct vg_layer_stage *s);
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                               struct vg_error *err);
 
+/** Largest ratio of neighbouring layers by the setting `cap`: its default if
+ * NAN, INFINITY if 0. */
+double vg_layer_cap(double cap);
+
+/** Adds a note on walls that get no layers because no first height is given. */
+void vg_note_missing_first(const struct vg_layer_stage *s,
+                           struct vg_boundary *b);
+
+/** Adds notes on the choice of the walls and on first heights and growth. */
+void vg_note_layers(const struct vg_layer_stage *s, struct vg_boundary *b);
+
 /** Adds a note in front of all others if a first height, or the reference
  * length that determines it, is implausible for the size of the walls, which is
  * mostly a matter of units. s: planned, with options. */
 void vg_note_first_heights(const struct vg_layer_stage *s,
                            struct vg_boundary *b);
+
+/** Computes first heights and skin friction at the points of the walls of s
+ * from the walls of the solution, b->read->shear. s: planned, with the requests
+ * of y_plus. run/input/first_from.c.
+ *
+ * @param out  empty; all points of walls. Owned by the caller, also on failure
+ *
+ * Patches with a first height of their own keep it. Notes say how many points
+ * are too far from the walls of the solution and keep the height of y_plus.
+ * VG_ERR_INPUT: all are. VG_ERR_MEMORY. */
+vg_status vg_first_from(const struct vg_layer_stage *s,
+                        const struct vg_boundary *b,
+                        struct vg_point_heights *out, struct vg_error *err);
+
+/** Replaces s->y_plus by the y+ of the measured first heights, s->fields, with
+ * the skin friction of `at`. VG_ERR_MEMORY. */
+vg_status vg_first_measure(struct vg_layer_stage *s,
+                           const struct vg_mesh *surface,
+                           const struct vg_point_heights *at,
+                           struct vg_error *err);
 
 /** Swaps slivers of the surface as the settings request, and makes p->resolved:
  * a run with these settings makes the same mesh. */

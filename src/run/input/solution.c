@@ -82,8 +82,9 @@ static int part_of(const char *name, size_t *len)
   return -1;
 }
 
-static vg_status refuse_name(const char *path, const char *name,
-                             struct vg_input *in, struct vg_error *err)
+vg_status vg_solution_no_array(const char *path, const char *name,
+                               const char *option, struct vg_input *in,
+                               struct vg_error *err)
 {
   char point[NAMES], cell[NAMES];
   const char *found;
@@ -100,10 +101,9 @@ static vg_status refuse_name(const char *path, const char *name,
       "it with ParaView's filter Cell Data to Point Data",
       path, name);
   return vg_fail(err, VG_ERR_INPUT, "%s: %s%s%s; its point arrays are: %s",
-                 path,
-                 *name ? "there is no point array '"
-                       : "give a field by --field",
-                 name, *name ? "'" : "", *point ? point : "none");
+                 path, *name ? "there is no point array '" : "give a field by ",
+                 *name ? name : option, *name ? "'" : "",
+                 *point ? point : "none");
 }
 
 static int is_empty(struct vg_input *in)
@@ -130,7 +130,7 @@ static vg_status read_array(const char *path, struct vg_input *in,
   /* A file that cannot be read has no arrays: the reader says why. */
   st = vg_vtu_values_parse(in, array, &m, &n, &value, err);
   if (st == VG_ERR_FORMAT && !vg_vtu_has_array(in, array) && !is_empty(in))
-    st = refuse_name(path, name, in, err);
+    st = vg_solution_no_array(path, name, "--field", in, err);
   free(array);
   if (st < 0) return st;
   if (s->n_field) vg_mesh_release(&m);

@@ -5,6 +5,7 @@
 #define VG_RUN_INPUT_SOLUTION_H
 
 #include "core/mesh/mesh.h"
+#include "io/stream/stream.h"
 
 #define VG_SOLUTION_FIELDS 16
 
@@ -42,5 +43,12 @@ vg_status vg_solution_read(const char *path, const char *names,
                            const char *mesh, struct vg_solution *s,
                            struct vg_error *err);
 void vg_solution_release(struct vg_solution *s);
+
+/** VG_ERR_INPUT: the .vtu `in` has no point array `name`. The message says
+ * whether there is one at the cells, and lists those at the points. name "": no
+ * array is named, which `option` does. */
+vg_status vg_solution_no_array(const char *path, const char *name,
+                               const char *option, struct vg_input *in,
+                               struct vg_error *err);
 
 #endif

@@ -146,6 +146,43 @@ static void table(FILE *to, const struct vg_layer_stage *s,
   if (s->n_wall > 1) row(to, NULL, &s->all);
 }
 
+static void row_y_plus(FILE *to, const struct vg_mesh *surface,
+                       const struct vg_patch_layers *w,
+                       const struct vg_y_plus_patch *y)
+{
+  const struct vg_y_plus_range *range[2] = { &y->before, &y->after };
+  char wanted[16] = "";
+
+  row_name(to, surface, w);
+  if (!isnan(y->wanted)) snprintf(wanted, sizeof wanted, "%.4g", y->wanted);
+  fprintf(to, " %9s", wanted);
+  for (int i = 0; i < 2; i++)
+    fprintf(to, "  %7.3f %7.3f %7.3f %6.1f", range[i]->min, range[i]->median,
+            range[i]->max, range[i]->within);
+  fprintf(to, "\n");
+}
+
+/* y+ with the skin friction of a solution. */
+static void y_plus(FILE *to, const struct vg_layer_stage *s,
+                   const struct vg_mesh *surface)
+{
+  if (!s->y_plus) return;
+  fprintf(to,
+          "\n  y+ of the first heights with the skin friction of the solution "
+          "(%%: share of the\n  points within %g to %g of the request): by "
+          "y_plus alone, and in this mesh\n  %5s %-16s %9s  %7s %7s %7s %6s  "
+          "%7s %7s %7s %6s\n",
+          VG_Y_PLUS_LOW, VG_Y_PLUS_HIGH, "patch", "name", "requested", "min",
+          "median", "max", "%", "min", "median", "max", "%");
+  for (size_t i = 0; i < s->n_wall && i < VG_SHOWN_PATCHES; i++)
+    row_y_plus(to, surface, &s->wall[i], &s->y_plus[i]);
+  if (s->n_wall > VG_SHOWN_PATCHES)
+    fprintf(to,
+            "  ... and %zu more patches (the JSON report lists all of them)\n",
+            s->n_wall - VG_SHOWN_PATCHES);
+  if (s->n_wall > 1) row_y_plus(to, NULL, &s->all, &s->y_plus[s->n_wall]);
+}
+
 /* Print the counts that are not zero, as in "proximity 12, corner 3"; returns
  * how many there are. */
 static int cause_words(FILE *to, const char *lead, const size_t *count)
@@ -305,6 +342,7 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   table(to, s, surface,
         "Total height (length unit of the surface) and growth ratio",
         s->all.y_plus.max > 0 ? with_y_plus : without, row_total, is_any);
+  y_plus(to, s, surface);
   table(to, s, surface, "Volume ratio of the cells across the layer tops",
         "     median 95th percentile      max", row_top, has_tops);
   causes(to, s, surface);
@@ -407,6 +445,34 @@ static json_t *walls_json(const struct vg_layer_stage *s,
   return list;
 }
 
+static json_t *y_plus_range(const struct vg_y_plus_range *r)
+{
+  return json_pack("{s:o s:o s:o s:o}", "min", vg_json_real(r->min), "median",
+                   vg_json_real(r->median), "max", vg_json_real(r->max),
+                   "percent_within", vg_json_real(r->within));
+}
+
+static json_t *y_plus_json(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i <= s->n_wall; i++) {
+    const struct vg_y_plus_patch *y = &s->y_plus[i];
+    const int is_all = i == s->n_wall;
+
+    json_array_append_new(
+      list,
+      json_pack("{s:o s:o s:o s:o s:o}", "patch",
+                is_all ? json_null()
+                       : json_integer(patch_of(surface, &s->wall[i])->id),
+                "requested", vg_json_real(y->wanted), "points",
+                vg_json_count(y->n_point), "before", y_plus_range(&y->before),
+                "after", y_plus_range(&y->after)));
+  }
+  return list;
+}
+
 static json_t *missed_json(const struct vg_layer_stage *s,
                            const struct vg_mesh *surface)
 {
@@ -479,6 +545,8 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
                       causes_json(r->compressed));
   json_object_set_new(o, "patches", walls_json(s, surface));
   json_object_set_new(o, "all", wall_json(&s->all));
+  if (s->y_plus)
+    json_object_set_new(o, "y_plus_of_solution", y_plus_json(s, surface));
   json_object_set_new(o, "limits_met", json_boolean(!s->n_missed));
   json_object_set_new(o, "limits_missed", missed_json(s, surface));
   json_object_set_new(o, "seconds", seconds_json(s));

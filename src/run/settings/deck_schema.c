@@ -41,6 +41,7 @@ static const struct {
 
 #define POSITIVE "{'exclusiveMinimum':0}"
 #define GIVEN "{'not':{'type':'null'}}"
+#define FILLED "{'minLength':1}"
 #define TRUE "{'const':true}"
 #define MACH "{'const':'mach'}"
 #define ONE_OR_MORE "{'minimum':1}"
@@ -61,6 +62,10 @@ static const struct {
   { "settings", "reynolds", POSITIVE, NEEDS, "reference_length", POSITIVE },
   { "settings", "reference_length", POSITIVE, NEEDS, "reynolds", POSITIVE },
   { "settings", "y_plus", POSITIVE, NEEDS, "reynolds", POSITIVE },
+  { "settings", "first_from", FILLED, EXCLUDES, "first", POSITIVE },
+  { "settings", "first_from", FILLED, EXCLUDES, "layers", "{'const':'no'}" },
+  { "settings", "first_from", FILLED, EXCLUDES, "layer_sources", TRUE },
+  { "settings", "first_from", FILLED, NEEDS, "y_plus", POSITIVE },
   { "settings", "constant_direction", TRUE, NEEDS, "split_direction",
     ONE_OR_MORE },
   { "layers", "first", GIVEN, EXCLUDES, "y_plus", GIVEN },

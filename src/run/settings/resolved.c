@@ -104,9 +104,10 @@ static vg_status add_slip(struct vg_layer_settings *l, int32_t id,
                  at / 2);
 }
 
-/* Replace y+ by heights, and lists and conditions by a row for each patch;
- * these lead to the same layers. Patches over which layers continue are in the
- * list slip, so that a second run finds them again. */
+/* Replace y+ by heights, unless a solution corrects them, and lists and
+ * conditions by a row for each patch; these lead to the same layers. Patches
+ * over which layers continue are in the list slip, so that a second run finds
+ * them again. */
 static vg_status resolve_layers(const struct vg_settings *read,
                                 const struct vg_decisions *d,
                                 struct vg_settings *s, struct vg_error *err)
@@ -116,6 +117,7 @@ static vg_status resolve_layers(const struct vg_settings *read,
 
   if (!d->has_layers) {
     l->grow = VG_ANSWER_NO;
+    *l->first_from = 0;
     return VG_OK;
   }
   s->n_layer = 0;
@@ -132,8 +134,10 @@ static vg_status resolve_layers(const struct vg_settings *read,
     st = vg_settings_add(s, VG_TABLE_LAYERS, &row, err);
   }
   l->grow = VG_ANSWER_YES;
-  l->first = vg_settings_first(l, l->first, l->y_plus);
-  l->y_plus = 0;
+  if (!*l->first_from) {
+    l->first = vg_settings_first(l, l->first, l->y_plus);
+    l->y_plus = 0;
+  }
   l->cap = isnan(l->cap) ? VG_LAYER_CAP : l->cap;
   return st;
 }

@@ -307,6 +307,23 @@ VG_ROW(REAL, layer, reynolds, "reynolds", 0,
 VG_ROW(REAL, layer, length, "reference_length", 0,
   .is_common = 1,
   LENGTH, .help = "Reference length of the Reynolds number")
+VG_TEXT_ROW(layer, first_from, VG_LIST_MAX, "first_from", "",
+  .unit = "", .argument = "FILE", .help = "Flow solution on an earlier mesh, "
+  "whose wall shear corrects the first height of y_plus at each point of the "
+  "walls: a .vtu or .vtp with values at the points; \"\": the flat-plate "
+  "estimate")
+VG_TEXT_ROW(layer, first_field, VG_LIST_MAX, "first_field", "",
+  .unit = "", .argument = "NAME", .help = "Point array of first_from with the "
+  "skin friction coefficient, or a vector whose length it is; \"\": cf, Cf, "
+  "skin_friction, Skin_Friction_Coefficient or wallShearStress")
+VG_ROW(REAL, layer, first_scale, "first_scale", 0,
+  .hi = HUGE_SIZE, .unit = "", .help = "Factor that turns the values of "
+  "first_field into a skin friction coefficient, such as 2/U^2 for "
+  "OpenFOAM's wallShearStress; 0: 1, except for wallShearStress, which needs "
+  "a factor")
+VG_ROW(REAL, layer, first_bound, "first_bound", 4,
+  .lo = 1, .hi = 1000, .unit = "", .help = "Largest factor by which first_from "
+  "raises or lowers a first height")
 VG_ROW(REAL, layer, ratio, "ratio", NAN,
   .is_common = 1,
   .lo = 1, .hi = 10, .optional = 1, .unit = "", .help = "Growth ratio: height "

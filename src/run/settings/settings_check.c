@@ -86,6 +86,30 @@ static vg_status check_layer_rows(const struct vg_settings *s,
   return s->n_layer ? check_numbers(s, VG_TABLE_LAYERS, err) : VG_OK;
 }
 
+/* A solution corrects the heights of y_plus, and no others. */
+static vg_status check_first_from(const struct vg_layer_settings *l,
+                                  struct vg_error *err)
+{
+  if (!*l->first_from) return VG_OK;
+  if (l->grow == VG_ANSWER_NO)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first_from is given, but layers is no; remove one of them");
+  if (l->first > 0)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first and first_from are both given; remove first, and "
+                   "give y_plus, which first_from reaches, or remove "
+                   "first_from");
+  if (l->by_source)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "layer_sources and first_from are both given; set "
+                   "layer_sources to no or remove first_from");
+  if (!(l->y_plus > 0) || !(l->reynolds > 0))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first_from requires y_plus, reynolds and "
+                   "reference_length");
+  return VG_OK;
+}
+
 static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
 {
   const struct vg_layer_settings *l = &s->layer;
@@ -120,6 +144,7 @@ static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
                    "layer_total, %g: there is no room for a layer; reduce the "
                    "first height or increase layer_total",
                    first, l->total);
+  if (check_first_from(l, err) < 0) return VG_ERR_INPUT;
   return check_layer_rows(s, err);
 }
 
