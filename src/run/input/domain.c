@@ -365,8 +365,7 @@ static vg_status check_reach(const struct vg_boundary *b, struct vg_error *err)
                  VG_COORDINATE_MAX);
 }
 
-/* Farfield options, with open settings filled in from the decided flow. */
-static struct vg_farfield decided_farfield(const struct vg_boundary *b)
+struct vg_farfield vg_boundary_farfield(const struct vg_boundary *b)
 {
   struct vg_settings view = b->read->settings; /* Tables are borrowed. */
 
@@ -477,7 +476,7 @@ static vg_status make_sizing(const struct vg_boundary *b,
 vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
 {
-  struct vg_farfield far = decided_farfield(b);
+  struct vg_farfield far = vg_boundary_farfield(b);
   struct vg_sizing *sizing = NULL;
   const size_t n_own = b->surface.n_patch;
   vg_status st;

@@ -15,6 +15,7 @@
 #include "base/memory.h"
 #include "io/mesh/aflr.h"
 #include "io/mesh/format.h"
+#include "io/section/section.h"
 #include "io/vgrid/mapbc.h"
 #include "io/vgrid/vgrid.h"
 #include "layers/columns/growth_law.h"
@@ -172,7 +173,9 @@ static vg_status find_surface(const char *stem, char **out,
 /* Stem of a complete surface name; NULL if it is not one. */
 static char *stem_of(const char *name)
 {
-  size_t suffix = vg_format_suffix_length(name), n = strlen(name);
+  size_t suffix = vg_section_is(name) ? vg_section_suffix_length(name)
+                                      : vg_format_suffix_length(name);
+  size_t n = strlen(name);
 
   if (!suffix || suffix >= n || !exists(name)) return NULL;
   return strndup(name, n - suffix);
@@ -282,6 +285,8 @@ vg_status vg_problem_open_deck(struct vg_problem *p, struct vg_error *err)
   const char *base = strrchr(f->stem, '/');
 
   vg_settings_default(s);
+  p->read.is_section = vg_section_is(f->surface);
+  if (p->read.is_section) vg_section_defaults(s);
   snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : f->stem);
   vg_text_trim_end(s->title);
   if (!*f->deck) return VG_OK;
@@ -579,6 +584,7 @@ static vg_status read_surface(struct vg_read *r, struct vg_display *show,
   const struct vg_project *project = *f->d3m ? &r->project : NULL;
   vg_status st;
 
+  if (r->is_section) return vg_read_section(r, err);
   if (!*f->front && *f->surface) return read_surface_file(r, show, err);
   r->side = VG_SIDE_DEFINED;
   st = *f->front ? vg_front_read(f->front, project, &r->surface, err)

@@ -16,6 +16,7 @@
 #include "run/input/sizes.h"
 #include "run/input/walls.h"
 #include "run/report/report.h"
+#include "run/section/section_surface.h"
 #include "run/settings/plan_options.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
@@ -370,11 +371,12 @@ static vg_status stop_here(const struct vg_run *r, struct vg_display *show,
 
 /* --- mesh check ---------------------------------------------------------- */
 
-static vg_status accept(const struct vg_run *r, struct vg_error *err)
+static vg_status accept(const struct vg_run *r, int has_field,
+                        struct vg_error *err)
 {
   char faults[300];
 
-  if (r->judge.is_valid && (!r->layers || r->field_judge.is_valid))
+  if (r->judge.is_valid && (!has_field || r->field_judge.is_valid))
     return VG_OK;
   vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
                    sizeof faults);
@@ -395,9 +397,12 @@ static vg_status prepare_flat(const struct vg_run *r,
     .face = (const uint32_t(*)[3])surface->tri,
     .patch = surface->tri_patch
   };
-  vg_status st = r->layers ? vg_layer_slices_flat(r->layers, out, err)
-                           : vg_flat_new(&b, out, err);
+  vg_status st = VG_OK;
 
+  /* A mesh of a section has no tetrahedra. */
+  if (!r->section.solid.n_point)
+    st = r->layers ? vg_layer_slices_flat(r->layers, out, err)
+                   : vg_flat_new(&b, out, err);
   return vg_comm_agree(r->comm, st, err);
 }
 
@@ -457,7 +462,10 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        struct vg_error *err)
 {
   const size_t n_sheet = r->slices.boundary->n_sheet_tri;
-  size_t front_faces = layers ? layers->front.n_face - 2 * n_sheet : 0;
+  const int is_section = r->section.solid.n_point > 0;
+  size_t front_faces = is_section ? r->section.n_front
+                     : layers     ? layers->front.n_face - 2 * n_sheet
+                                  : 0;
   struct put put = { .run = r, .show = show };
   struct vg_flat *flat = NULL;
   double t = vg_display_now();
@@ -475,20 +483,21 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, flat, vg_wants_median_dual(&p->asked),
                             put_slice, &put, &r->judge,
-                            r->layers ? &r->field_judge : NULL, err);
+                            layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
-  if (st >= 0) st = accept(r, err);
+  if (st >= 0) st = accept(r, layers != NULL, err);
   if (st >= 0) st = accept_sheets(r, &p->boundary.surface, &put, err);
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
   st = vg_comm_agree(r->comm, st, err);
   if (st >= 0)
     st = vg_run_pictures_gather(&r->pictures, r->comm,
-                                vg_partition_slices(r->field),
+                                is_section ? &r->slices
+                                           : vg_partition_slices(r->field),
                                 r->slices.n_layer_cell[VG_SLICE_TET],
                                 r->threads,
-                                r->layers ? &r->field_judge : &r->judge, err);
+                                layers ? &r->field_judge : &r->judge, err);
 done:
   vg_run_stage_ends(r, VG_STAGE_CHECK);
   vg_flat_free(flat);
@@ -664,6 +673,78 @@ done:
   return st;
 }
 
+/* --- plane sections ------------------------------------------------------ */
+
+/* Sizing field and layers of a slab, on the cores of the node. */
+static vg_status grow_section(struct vg_run *r, const struct vg_problem *p,
+                              struct vg_layer_stage *layers,
+                              struct vg_team *team, struct vg_display *show,
+                              struct vg_sizing **sizing, struct vg_error *err)
+{
+  const struct vg_mesh *slab = &p->boundary.surface;
+  const int threads = node_threads(r, &p->asked);
+  struct vg_mesh view = VG_MESH_INIT;
+  double t;
+  vg_status st;
+
+  VG_TRY(vg_section_sizes(slab, &view, err));
+  VG_TRY(measure_sizes(r, p, &view, 1, threads, team, show, sizing, err));
+  t = vg_display_now();
+  layers->options.threads = threads;
+  layers->options.team = team;
+  if (layers->is_on) st = vg_layer_stage_grow(layers, slab, *sizing, show, err);
+  r->time_layers = vg_display_now() - t;
+done:
+  layers->options.team = NULL;
+  st = vg_team_close(team, st, err);
+  vg_comm_bind_node(r->comm, 0);
+  free(view.point);
+  free(view.tri);
+  free(view.tri_patch);
+  return st;
+}
+
+static vg_status finish_section(struct vg_run *r, const struct vg_problem *p,
+                                struct vg_layer_stage *layers,
+                                struct vg_error *err)
+{
+  const struct vg_mesh *slab = &p->boundary.surface;
+  vg_status st = vg_section_tops(slab, &layers->layers, &r->section.plane,
+                                 &layers->top, err);
+
+  if (st >= 0 && !r->rank) st = vg_layer_stage_finish(layers, slab, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
+/* Every rank makes the mesh, which is of the order of the surface; rank 0
+ * serves it. */
+static vg_status mesh_section(struct vg_run *r, const struct vg_problem *p,
+                              struct vg_layer_stage *layers,
+                              struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_settings *s = &p->resolved.settings;
+  const struct vg_mesh *slab = &p->boundary.surface;
+  struct vg_layers *grown = layers->is_on ? &layers->layers : NULL;
+  struct vg_sizing *sizing = NULL;
+  struct vg_team *team;
+  vg_status st = vg_team_open(r->comm, &team, err);
+
+  if (st < 0) return st;
+  if (leads_node(r)) st = grow_section(r, p, layers, team, show, &sizing, err);
+  VG_TRY(share_with_node(r, st, grown, show, &sizing, err));
+  VG_TRY(vg_run_agree(r->comm, slab, grown, sizing, r->options.change, err));
+  st = vg_section_mesh_new(slab, grown, s->section_axis ? 1 : 2,
+                           vg_section_width(s, slab), &r->section, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  vg_section_mesh_slices(&r->section, !r->rank, &r->slices);
+  r->n_field_cell = r->section.plane.n_tri - r->section.plane.n_layer_tri;
+  VG_TRY(judge(r, p, grown, sizing, show, err));
+  if (grown) st = finish_section(r, p, layers, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
 /* Solver partitions of the mesh that is about to be written. */
 static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
                                  struct vg_display *show, struct vg_error *err)
@@ -694,9 +775,11 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
 
   r->threads = p->resolved.settings.threads ? (int)p->resolved.settings.threads
                                             : vg_comm_default_threads(r->comm);
-  r->pictures.is_on = r->outputs && p->resolved.settings.report_html;
-  st = layers->is_on ? mesh_layers(r, p, layers, show, err)
-                     : mesh_plain(r, p, show, err);
+  r->pictures.is_on = r->outputs && p->resolved.settings.report_html &&
+                      !p->read.is_section;
+  st = p->read.is_section ? mesh_section(r, p, layers, show, err)
+     : layers->is_on      ? mesh_layers(r, p, layers, show, err)
+                          : mesh_plain(r, p, show, err);
   return st < 0 ? st : part_for_solver(r, p, show, err);
 }
 
@@ -705,6 +788,7 @@ void vg_run_release(struct vg_run *r, int success)
   vg_solver_slices_close(r->parts);
   vg_run_pictures_release(&r->pictures);
   vg_layer_slices_close(r->layers);
+  vg_section_mesh_release(&r->section);
   vg_mesh_release(&r->parted_boundary);
   free(r->sheets);
   vg_partition_free(r->field);

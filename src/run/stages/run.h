@@ -18,6 +18,7 @@
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"
+#include "run/section/section_mesh.h"
 #include "run/stages/agree.h"
 #include "run/stages/output.h"
 #include "run/stages/pictures.h"
@@ -73,6 +74,7 @@ struct vg_run {
   struct vg_store *store;
   struct vg_store_report stored;
   struct vg_layer_slices *layers; /* NULL without layers. */
+  struct vg_section_mesh section; /* The mesh of a plane section. */
   struct vg_slices slices;        /* The mesh. */
   struct vg_mesh parted_boundary; /* Its boundary and its sheets, if it has
                                      sheets and no layers. */
