@@ -63,6 +63,7 @@ static vg_status find_corners(struct vg_outline *c, struct vg_error *err)
 
     if (at >= ALWAYS || (at >= PERHAPS && at > 2 * fmax(before, after)))
       c->corner[i] = turn[i] > 0 ? 1 : -1;
+    c->n_corner += c->corner[i] != 0;
   }
   free(turn);
   return VG_OK;
@@ -108,8 +109,7 @@ static void find_base(struct vg_outline *c)
   size_t a, b;
 
   c->base[0] = c->base[1] = SIZE_MAX;
-  for (a = 0; a < c->n && !c->corner[a]; a++) continue;
-  if (a == c->n) return;
+  if (!c->n_corner) return;
   a = before(c, 0);
   b = c->corner[0] ? 0 : after(c, 0);
   if (!is_base(c, a, b) && c->corner[0]) {
@@ -178,8 +178,8 @@ static vg_status fit_all(struct vg_outline *c, struct vg_error *err)
   size_t first, a, b;
 
   if (!scratch) return vg_fail_memory(err, "a spline");
-  for (first = 0; first < c->n && !c->corner[first]; first++) continue;
-  if (first == c->n) {
+  for (first = 0; c->n_corner && !c->corner[first]; first++) continue;
+  if (!c->n_corner) {
     fit(c, (c->n - OVERLAP % c->n) % c->n, c->n + 2 * OVERLAP, OVERLAP,
         scratch);
   } else {

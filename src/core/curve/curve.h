@@ -16,6 +16,7 @@
 #include "base/status.h"
 
 struct vg_outline {
+  size_t n_corner;
   size_t n;       /* Points, and intervals between them. */
   double (*x)[2]; /* [n] counter-clockwise. */
   double *s;      /* [n + 1] chord length up to each point; s[n]: of all. */
@@ -68,7 +69,8 @@ struct vg_outline_sizes {
  * by the growth.
  *
  * @param n, x  out: points, counter-clockwise from the first corner, or from
- *              point 0; *x is owned by the caller
+ *              point 0; corners and the nose are among them; *x is owned by
+ *              the caller
  * VG_ERR_INPUT: a request is below 1e-8 of the length. VG_ERR_MEMORY. */
 vg_status vg_outline_divide(const struct vg_outline *c,
                           const struct vg_outline_sizes *sizes, size_t *n,

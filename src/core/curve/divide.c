@@ -13,6 +13,7 @@
 enum {
   PER_EDGE = 4,      /* Samples of the requests per edge, */
   PER_INTERVAL = 8,  /* and between two given points. */
+  STEPS_MIN = 1,
   SAMPLES_MAX = 1 << 24
 };
 
@@ -169,12 +170,19 @@ static vg_status divide_piece(struct division *d, size_t a, size_t b,
 
   d->from = c->s[a];
   if (!is_base || !n)
-    VG_TRY(vg_graded_steps(len, size_at, d, a == b ? 6 : 1, &n, &s, err));
+    VG_TRY(vg_graded_steps(len, size_at, d, STEPS_MIN, &n, &s, err));
   for (size_t i = 0; i < n; i++)
     VG_TRY(put(d, d->from + (s ? s[i] : len * ((double)i / (double)n)), err));
 done:
   free(s);
   return st;
+}
+
+/* Whether pieces end at point i: at corners and the nose, so that the edges of a
+ * symmetric section are symmetric, and without corners also at the start. */
+static int is_end(const struct vg_outline *c, size_t i)
+{
+  return c->corner[i] || i == c->nose || (!i && !c->n_corner);
 }
 
 vg_status vg_outline_divide(const struct vg_outline *c,
@@ -190,20 +198,16 @@ vg_status vg_outline_divide(const struct vg_outline *c,
 
   VG_TRY(sample(&d, err));
   limit(&d);
-  while (first < c->n && !c->corner[first]) first++;
-  if (first == c->n) {
-    VG_TRY(divide_piece(&d, 0, 0, err));
-  } else {
-    a = first;
-    do {
-      b = a;
-      do
-        b = b + 1 < c->n ? b + 1 : 0;
-      while (!c->corner[b]);
-      VG_TRY(divide_piece(&d, a, b, err));
-      a = b;
-    } while (a != first);
-  }
+  while (!is_end(c, first)) first++;
+  a = first;
+  do {
+    b = a;
+    do
+      b = b + 1 < c->n ? b + 1 : 0;
+    while (!is_end(c, b));
+    VG_TRY(divide_piece(&d, a, b, err));
+    a = b;
+  } while (a != first);
   *n = d.n_out;
   *x = d.out;
   d.out = NULL;

@@ -775,8 +775,7 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
 
   r->threads = p->resolved.settings.threads ? (int)p->resolved.settings.threads
                                             : vg_comm_default_threads(r->comm);
-  r->pictures.is_on = r->outputs && p->resolved.settings.report_html &&
-                      !p->read.is_section;
+  r->pictures.is_on = r->outputs && p->resolved.settings.report_html;
   st = p->read.is_section ? mesh_section(r, p, layers, show, err)
      : layers->is_on      ? mesh_layers(r, p, layers, show, err)
                           : mesh_plain(r, p, show, err);
