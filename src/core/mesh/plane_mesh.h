@@ -13,7 +13,7 @@ struct vg_plane_mesh {
   double (*x)[2];     /* [n_point] */
   uint32_t (*tri)[3], (*quad)[4]; /* Cells, counter-clockwise. */
   uint32_t (*edge)[2];    /* [n_edge] boundary, with the fluid on the left. */
-  uint32_t *edge_patch;   /* [n_edge] index into patch[] */
+  uint32_t *edge_patch;   /* [n_edge] index into patch[], ascending. */
   struct vg_patch *patch; /* [n_patch] */
 };
 #define VG_PLANE_MESH_INIT                                                     \

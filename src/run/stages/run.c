@@ -737,6 +737,7 @@ static vg_status mesh_section(struct vg_run *r, const struct vg_problem *p,
                            vg_section_width(s, slab), &r->section, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   vg_section_mesh_slices(&r->section, !r->rank, &r->slices);
+  if (r->outputs) r->outputs->plane = &r->section.plane;
   r->n_field_cell = r->section.plane.n_tri - r->section.plane.n_layer_tri;
   VG_TRY(judge(r, p, grown, sizing, show, err));
   if (grown) st = finish_section(r, p, layers, err);
