@@ -56,6 +56,8 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
+  if (p->read.is_section)
+    json_object_set_new(o, "plane", vg_report_plane_json(&r->run->plane));
   if (r->run->sheets)
     json_object_set_new(o, "sheets",
                         vg_report_sheets_json(r->run->slices.boundary,
@@ -174,16 +176,11 @@ static void print_files(FILE *to, const struct vg_run_report *r)
   }
 }
 
-void vg_run_report_text(FILE *to, const struct vg_run_report *r)
+/* How the space outside the layers was filled. */
+static void print_fill(FILE *to, const struct vg_run_report *r)
 {
   const struct vg_run *m = r->run;
 
-  vg_run_report_surface_text(to, r);
-  if (!r->has_mesh) return;
-  if (r->layers->is_on) {
-    fprintf(to, "\nBoundary layers\n");
-    vg_report_layers_text(to, r->layers, &r->problem->boundary.surface);
-  }
   fprintf(to, "\nDomain decomposition\n");
   vg_report_partition_text(to, m);
   fprintf(to, "\nVolume fill\n");
@@ -194,16 +191,37 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
     print_count(to, "tetrahedra", m->n_field_cell);
     vg_report_mesh_text(to, &m->field_judge, 0);
   }
-  fprintf(to, "\nVolume mesh\n");
+}
+
+void vg_run_report_text(FILE *to, const struct vg_run_report *r)
+{
+  const struct vg_run *m = r->run;
+
+  vg_run_report_surface_text(to, r);
+  if (!r->has_mesh) return;
+  if (r->layers->is_on) {
+    fprintf(to, "\nBoundary layers\n");
+    vg_report_layers_text(to, r->layers, &r->problem->boundary.surface);
+  }
+  if (r->problem->read.is_section) {
+    fprintf(to, "\nMesh in the plane\n");
+    vg_report_plane_text(to, &m->plane);
+  } else {
+    print_fill(to, r);
+  }
+  fprintf(to, r->problem->read.is_section ? "\nMesh one cell thick\n"
+                                          : "\nVolume mesh\n");
   print_count(to, "points", m->slices.n_point);
-  print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  if (!r->problem->read.is_section)
+    print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
   if (m->slices.n_cell[VG_SLICE_PYR])
     print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
   if (m->slices.n_cell[VG_SLICE_PRI])
     print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
   if (m->slices.n_cell[VG_SLICE_HEX])
     print_count(to, "hexahedra", m->slices.n_cell[VG_SLICE_HEX]);
-  if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
+  if (r->layers->is_on || r->problem->read.is_section)
+    vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
   if (m->parts) {
