@@ -52,7 +52,7 @@ static double request_at_point(const struct division *d, size_t i)
   double h = fmin(request(d, i, 0),
                   request(d, i ? i - 1 : c->n - 1, INFINITY));
 
-  if (z->corner > 0 && c->corner[i] > 0) h = fmin(h, z->corner);
+  if (z->corner > 0 && c->corner[i]) h = fmin(h, z->corner);
   if (z->nose > 0 && i == c->nose) h = fmin(h, z->nose);
   if (z->n_base && (i == c->base[0] || i == c->base[1])) {
     const double a = c->s[c->base[0]], b = c->s[c->base[1]];
