@@ -161,7 +161,8 @@ static vg_status find_surface(const char *stem, char **out,
       found = path;
     }
   }
-  if (st >= 0 && !found) found = strdup("");
+  /* Other programs write .dat files next to a surface. */
+  if (st >= 0 && !found) found = adjacent(stem, VG_SECTION_SUFFIX + 1);
   if (st < 0) {
     free(found);
     return st;
@@ -216,12 +217,13 @@ static vg_status refuse_absent(const char *name, struct vg_error *err)
   else if (vg_format_suffix_length(name) || vg_text_ends(name, ".d3m"))
     st = vg_fail(err, VG_ERR_INPUT, "%s: this file does not exist", name);
   else
-    st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: there is no such file, and no project found: there is "
-                 "neither %s.d3m nor %s.front nor a surface such as "
-                 "%s.lb8.ugrid or %s.stl; give the stem of a project or the "
-                 "complete name of a surface file",
-                 name, name, name, name, name);
+    st = vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: there is no such file, and no project found: there is "
+      "neither %s.d3m nor %s.front nor a surface such as "
+      "%s.lb8.ugrid or %s.stl, nor a plane section %s.dat; give the stem of a project or the "
+      "complete name of a surface file",
+      name, name, name, name, name, name);
   free(folder);
   return st;
 }

@@ -327,6 +327,10 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
 vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
                                         struct vg_error *err);
 
+/** Defaults of the settings of a plane section, where they differ from those of
+ * a surface. */
+void vg_section_defaults(struct vg_settings *s);
+
 /** Width of the cells of a mesh of a section: section_width or the largest
  * chord. slab: its surface (run/section/section_surface.h). */
 double vg_section_width(const struct vg_settings *s,

@@ -20,9 +20,6 @@ int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 
 /* run/input/section_boundary.c ------------------------------------------- */
 
-/** Default settings of a mesh in two dimensions, where they differ. */
-void vg_section_defaults(struct vg_settings *s);
-
 /** Reads the strip of a plane section, with the conditions of its patches. */
 vg_status vg_read_section(struct vg_read *r, struct vg_error *err);
 
