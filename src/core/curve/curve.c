@@ -8,15 +8,21 @@
 
 #include "base/memory.h"
 
-/* S91: tangents of half the turning angles 75 and 30 degrees. */
-#define ALWAYS 0.7673269879789604
-#define PERHAPS 0.2679491924311227
-#define FULL_TURN 1e9 /* Half of 180 degrees. */
+/* S91: turning angles of corners, in radians, and the ratio of the curvature
+ * there to that at the next points. */
+#define ALWAYS 1.75  /* 100 degrees */
+#define BLUNT 1.05   /* 60 degrees */
+#define PERHAPS 0.14 /* 8 degrees */
+#define RATIO 6.0
+#define HALF_PI 1.5707963267948966
+
 /* Longest base of a blunt trailing edge, relative to the chord. */
 #define BASE 0.1 /* S91 */
 
-enum { OVERLAP = 32 }; /* Intervals by which a periodic spline is extended; an
-                          error at the end decays by 0.27 in each. */
+enum {
+  OVERLAP = 32
+}; /* Intervals by which a periodic spline is extended; an
+      error at the end decays by 0.27 in each. */
 
 void vg_outline_release(struct vg_outline *c)
 {
@@ -36,8 +42,15 @@ static double length(const double a[2], const double b[2])
 
 /* --- corners ------------------------------------------------------------- */
 
-/* Tangent of half the turning angle at point i; positive: to the left. */
-static double half_turn(const struct vg_outline *c, size_t i)
+/* Arc tangent without libm, to 0.005. */
+static double arc_tangent(double t)
+{
+  return t <= 1 ? t / (1 + 0.28 * t * t) : HALF_PI - t / (t * t + 0.28);
+}
+
+/* Turning angle at point i, positive to the left, and the mean curvature of the
+ * polygon there. */
+static double turn_at(const struct vg_outline *c, size_t i, double *curvature)
 {
   const double *a = c->x[i ? i - 1 : c->n - 1], *b = c->x[i];
   const double *d = c->x[i + 1 < c->n ? i + 1 : 0];
@@ -45,27 +58,32 @@ static double half_turn(const struct vg_outline *c, size_t i)
   const double v[2] = { d[0] - b[0], d[1] - b[1] };
   const double cross = u[0] * v[1] - u[1] * v[0];
   const double dot = u[0] * v[0] + u[1] * v[1];
-  const double below = length(a, b) * length(b, d) + dot;
+  const double l = length(a, b), m = length(b, d), below = l * m + dot;
+  const double turn = below > 0 ? 2 * arc_tangent(fabs(cross) / below)
+                                : 2 * HALF_PI;
 
-  return below > 0 ? cross / below : cross < 0 ? -FULL_TURN : FULL_TURN;
+  *curvature = 2 * turn / (l + m);
+  return cross < 0 ? -turn : turn;
 }
 
 static vg_status find_corners(struct vg_outline *c, struct vg_error *err)
 {
-  double *turn = vg_alloc(c->n, sizeof *turn);
+  double *bend = vg_alloc(2 * c->n, sizeof *bend), *turn = bend + c->n;
 
-  if (!turn) return vg_fail_memory(err, "the corners of a curve");
-  for (size_t i = 0; i < c->n; i++) turn[i] = half_turn(c, i);
+  if (!bend) return vg_fail_memory(err, "the corners of a curve");
+  for (size_t i = 0; i < c->n; i++) turn[i] = turn_at(c, i, &bend[i]);
   for (size_t i = 0; i < c->n; i++) {
-    const double before = fabs(turn[i ? i - 1 : c->n - 1]);
-    const double after = fabs(turn[i + 1 < c->n ? i + 1 : 0]);
+    const double before = bend[i ? i - 1 : c->n - 1];
+    const double after = bend[i + 1 < c->n ? i + 1 : 0];
     const double at = fabs(turn[i]);
 
-    if (at >= ALWAYS || (at >= PERHAPS && at > 2 * fmax(before, after)))
+    if (at >= ALWAYS ||
+        (at >= PERHAPS && bend[i] > RATIO * fmax(before, after)) ||
+        (at >= BLUNT && bend[i] > RATIO * fmin(before, after)))
       c->corner[i] = turn[i] > 0 ? 1 : -1;
     c->n_corner += c->corner[i] != 0;
   }
-  free(turn);
+  free(bend);
   return VG_OK;
 }
 
@@ -82,16 +100,14 @@ static void find_nose(struct vg_outline *c)
 
 static size_t before(const struct vg_outline *c, size_t i)
 {
-  do
-    i = i ? i - 1 : c->n - 1;
+  do i = i ? i - 1 : c->n - 1;
   while (!c->corner[i]);
   return i;
 }
 
 static size_t after(const struct vg_outline *c, size_t i)
 {
-  do
-    i = i + 1 < c->n ? i + 1 : 0;
+  do i = i + 1 < c->n ? i + 1 : 0;
   while (!c->corner[i]);
   return i;
 }
@@ -195,15 +211,15 @@ static vg_status fit_all(struct vg_outline *c, struct vg_error *err)
 }
 
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
-                       struct vg_error *err)
+                         struct vg_error *err)
 {
   assert(n >= 3 && x && out);
 
   struct vg_outline c = { .n = n,
-                        .x = vg_alloc(n, sizeof *c.x),
-                        .s = vg_alloc(n + 1, sizeof *c.s),
-                        .bend = vg_calloc(n, sizeof *c.bend),
-                        .corner = vg_calloc(n, 1) };
+                          .x = vg_alloc(n, sizeof *c.x),
+                          .s = vg_alloc(n + 1, sizeof *c.s),
+                          .bend = vg_calloc(n, sizeof *c.bend),
+                          .corner = vg_calloc(n, 1) };
   vg_status st;
 
   if (!c.x || !c.s || !c.bend || !c.corner) {
@@ -226,7 +242,7 @@ done:
 }
 
 void vg_outline_at(const struct vg_outline *c, size_t i, double t, double x[2],
-                 double *curvature)
+                   double *curvature)
 {
   assert(i < c->n && x && curvature);
 
@@ -246,7 +262,7 @@ void vg_outline_at(const struct vg_outline *c, size_t i, double t, double x[2],
   if (u <= 0) memcpy(x, a, 2 * sizeof *x);
   if (u >= 1) memcpy(x, b, 2 * sizeof *x);
   speed = d1[0] * d1[0] + d1[1] * d1[1];
-  *curvature = speed > 0 ? fabs(d1[0] * d2[1] - d1[1] * d2[0]) /
-                             (speed * sqrt(speed))
-                         : INFINITY;
+  *curvature = speed > 0
+               ? fabs(d1[0] * d2[1] - d1[1] * d2[0]) / (speed * sqrt(speed))
+               : INFINITY;
 }

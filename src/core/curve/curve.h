@@ -30,7 +30,7 @@ struct vg_outline {
    * to point 0; both SIZE_MAX: none. */
   size_t base[2];
 };
-#define VG_OUTLINE_INIT                                                          \
+#define VG_OUTLINE_INIT                                                        \
   {                                                                            \
     0                                                                          \
   } /* releasing this is a no-op */
@@ -39,16 +39,17 @@ void vg_outline_release(struct vg_outline *c);
 
 /** Makes the curve through n >= 3 points, of which neighbours differ.
  *
- * A point is a corner where the chords turn by 75 degrees or more, or by at
- * least 30 degrees and more than twice as much as at both neighbours: a coarse
- * polygon turns at all points of its nose. Arithmetic without libm other than
- * sqrt. O(n). VG_ERR_MEMORY. */
+ * A point is a corner where the polygon turns by 100 degrees or more, or by 8
+ * degrees and its mean curvature is more than 6 times that at both next points,
+ * or by 60 degrees and it is that at one of them, as on both sides of a short
+ * base. A coarse polygon also turns at the points of a nose, but at all of
+ * them. Arithmetic without libm other than sqrt. O(n). VG_ERR_MEMORY. */
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
-                       struct vg_error *err);
+                         struct vg_error *err);
 
 /** Point at the chord length t in interval i, and the curvature there. */
 void vg_outline_at(const struct vg_outline *c, size_t i, double t, double x[2],
-                 double *curvature);
+                   double *curvature);
 
 /** Requested edge lengths. */
 struct vg_outline_sizes {
@@ -73,7 +74,7 @@ struct vg_outline_sizes {
  *              the caller
  * VG_ERR_INPUT: a request is below 1e-8 of the length. VG_ERR_MEMORY. */
 vg_status vg_outline_divide(const struct vg_outline *c,
-                          const struct vg_outline_sizes *sizes, size_t *n,
-                          double (**x)[2], struct vg_error *err);
+                            const struct vg_outline_sizes *sizes, size_t *n,
+                            double (**x)[2], struct vg_error *err);
 
 #endif

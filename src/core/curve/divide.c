@@ -11,8 +11,8 @@
 #define FULL_CIRCLE 6.283185307179586
 
 enum {
-  PER_EDGE = 4,      /* Samples of the requests per edge, */
-  PER_INTERVAL = 8,  /* and between two given points. */
+  PER_EDGE = 4,     /* Samples of the requests per edge, */
+  PER_INTERVAL = 8, /* and between two given points. */
   STEPS_MIN = 1,
   SAMPLES_MAX = 1 << 24
 };
@@ -49,8 +49,7 @@ static double request_at_point(const struct division *d, size_t i)
 {
   const struct vg_outline *c = d->c;
   const struct vg_outline_sizes *z = d->z;
-  double h = fmin(request(d, i, 0),
-                  request(d, i ? i - 1 : c->n - 1, INFINITY));
+  double h = fmin(request(d, i, 0), request(d, i ? i - 1 : c->n - 1, INFINITY));
 
   if (z->corner > 0 && c->corner[i]) h = fmin(h, z->corner);
   if (z->nose > 0 && i == c->nose) h = fmin(h, z->nose);
@@ -178,16 +177,16 @@ done:
   return st;
 }
 
-/* Whether pieces end at point i: at corners and the nose, so that the edges of a
- * symmetric section are symmetric, and without corners also at the start. */
+/* Whether pieces end at point i: at corners and the nose, so that the edges of
+ * a symmetric section are symmetric, and without corners also at the start. */
 static int is_end(const struct vg_outline *c, size_t i)
 {
   return c->corner[i] || i == c->nose || (!i && !c->n_corner);
 }
 
 vg_status vg_outline_divide(const struct vg_outline *c,
-                          const struct vg_outline_sizes *sizes, size_t *n,
-                          double (**x)[2], struct vg_error *err)
+                            const struct vg_outline_sizes *sizes, size_t *n,
+                            double (**x)[2], struct vg_error *err)
 {
   assert(c->n && sizes->largest > 0 && sizes->growth > 1 && n && x);
   assert(sizes->per_turn > 0);
@@ -202,8 +201,7 @@ vg_status vg_outline_divide(const struct vg_outline *c,
   a = first;
   do {
     b = a;
-    do
-      b = b + 1 < c->n ? b + 1 : 0;
+    do b = b + 1 < c->n ? b + 1 : 0;
     while (!is_end(c, b));
     VG_TRY(divide_piece(&d, a, b, err));
     a = b;

@@ -48,9 +48,8 @@ size_t vg_section_suffix_length(const char *path)
   const size_t n = all > 3 && !strcasecmp(path + all - 3, ".gz") ? all - 3
                                                                  : all;
 
-  return n > 4 && !strncasecmp(path + n - 4, VG_SECTION_SUFFIX, 4)
-         ? all - n + 4
-         : 0;
+  return n > 4 && !strncasecmp(path + n - 4, VG_SECTION_SUFFIX, 4) ? all - n + 4
+                                                                   : 0;
 }
 
 int vg_section_is(const char *path)
@@ -130,7 +129,10 @@ static vg_status close_element(struct reader *r, size_t first,
   const char *path = r->in->path;
   struct vg_section_element e = { .first = first };
 
-  if (s->n_point - first > 1 && same(s, first, s->n_point - 1)) s->n_point--;
+  const int is_joined = s->n_point - first > 1 &&
+                        same(s, first, s->n_point - 1);
+
+  if (is_joined) s->n_point--;
   e.n = s->n_point - first;
   if (e.n < POINTS_MIN)
     return vg_fail(err, VG_ERR_GEOMETRY,
@@ -151,7 +153,9 @@ static vg_status close_element(struct reader *r, size_t first,
                    "%s:%zu: all points of this section lie on a line, so that "
                    "it encloses no area",
                    path, s->line[first]);
-  if (area(s, first, e.n) < 0) reverse(s, first, e.n);
+  /* The trailing edge remains the first point. */
+  if (area(s, first, e.n) < 0)
+    reverse(s, first + (size_t)is_joined, e.n - (size_t)is_joined);
   memcpy(e.name, r->title, sizeof e.name);
   if (vg_reserve(&s->element, &s->cap, s->n + 1, sizeof *s->element))
     return vg_fail_memory(err, "the elements of a section");
@@ -238,8 +242,8 @@ static vg_status refuse_open(const struct reader *r, size_t k,
                  "section in Selig's order begins and ends at the trailing "
                  "edge",
                  r->in->path, s->line[a.first], p[0], p[1], q[0], q[1],
-                 s->line[a.first + a.n - 1], distance(s, a.first, a.first + a.n - 1),
-                 GAP, size);
+                 s->line[a.first + a.n - 1],
+                 distance(s, a.first, a.first + a.n - 1), GAP, size);
 }
 
 /* Blocks in Selig's order: one element each. */
@@ -304,8 +308,8 @@ static int is_like_number(const char *text, size_t len)
   const size_t n = len - sign;
 
   return (n && (isdigit((unsigned char)*word) || *word == '.')) ||
-         (n == 3 && (!strncasecmp(word, "nan", 3) ||
-                     !strncasecmp(word, "inf", 3)));
+         (n == 3 &&
+          (!strncasecmp(word, "nan", 3) || !strncasecmp(word, "inf", 3)));
 }
 
 static void set_title(struct reader *r, const char *text, size_t len)

@@ -95,7 +95,8 @@ static vg_status check_crossings(struct check *k)
   }
   VG_TRY(vg_box_tree_build_items(&tree, s->n_point, box, NULL, k->err));
   st = vg_box_tree_pairs(&tree, 1, visit, k);
-  if (st == VG_ERR_MEMORY) st = vg_fail_memory(k->err, "the check of a section");
+  if (st == VG_ERR_MEMORY)
+    st = vg_fail_memory(k->err, "the check of a section");
 done:
   vg_box_tree_release(&tree);
   free(box);
@@ -158,7 +159,7 @@ vg_status vg_section_check(const struct vg_section *s, const char *path,
 
       k.element[at] = (uint32_t)e;
       k.next[at] = (uint32_t)(i + 1 < s->element[e].n ? at + 1
-                                                       : s->element[e].first);
+                                                      : s->element[e].first);
     }
   VG_TRY(check_crossings(&k));
   st = check_nesting(&k);

@@ -331,6 +331,11 @@ vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
  * a surface. */
 void vg_section_defaults(struct vg_settings *s);
 
+/** VG_ERR_UNSUPPORTED for a plane section, which only vanguard mesh and check
+ * take. Called after vg_problem_open. */
+vg_status vg_problem_refuse_section(const struct vg_problem *p,
+                                    struct vg_error *err);
+
 /** Width of the cells of a mesh of a section: section_width or the largest
  * chord. slab: its surface (run/section/section_surface.h). */
 double vg_section_width(const struct vg_settings *s,

@@ -11,13 +11,24 @@
 #include "run/section/section_surface.h"
 #include "run/settings/plan_options.h"
 
-#define FAN_ANGLE 60.0  /* S92: sharp and blunt trailing edges */
-#define SIZE 0.02       /* S92: largest edge over the length of the section */
+#define FAN_ANGLE 60.0 /* S92: sharp and blunt trailing edges */
+#define SIZE 0.02      /* S92: largest edge over the length of the section */
 
 void vg_section_defaults(struct vg_settings *s)
 {
   s->cells = VG_LAYER_HEX;
   s->layer.fan_angle = FAN_ANGLE;
+}
+
+vg_status vg_problem_refuse_section(const struct vg_problem *p,
+                                    struct vg_error *err)
+{
+  if (!p->read.is_section) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s is a plane section, and this command works on surfaces in "
+                 "space; vanguard mesh makes the mesh in two dimensions, and "
+                 "vanguard check checks the section",
+                 p->read.files.surface);
 }
 
 /* Settings that only surfaces in space have. */
@@ -105,9 +116,10 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
     .smallest = o.h_min * s->scale,
     .per_turn = o.per_turn / s->scale,
     .growth = vg_options_growth(s),
-    .n_base = (size_t)(s->tail_cells ? fmax(1, floor((double)s->tail_cells /
-                                                       s->scale + 0.5))
-                                     : 0),
+    .n_base = (size_t)(s->tail_cells
+                         ? fmax(1,
+                                floor((double)s->tail_cells / s->scale + 0.5))
+                         : 0),
     .at = request_at,
     .user = &q
   };
@@ -158,8 +170,7 @@ vg_status vg_boundary_close_section(struct vg_boundary *b,
   struct vg_mesh view = VG_MESH_INIT;
   struct vg_sizing *sizing = NULL;
   struct edges edges;
-  struct vg_size_function size = { edge_at, &edges,
-                                   { vg_display_stop, show } };
+  struct vg_size_function size = { edge_at, &edges, { vg_display_stop, show } };
   const size_t n_tri = b->surface.n_tri;
   vg_status st;
 
@@ -167,8 +178,8 @@ vg_status vg_boundary_close_section(struct vg_boundary *b,
   VG_TRY(vg_section_sizes(&b->surface, &view, err));
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
-  VG_TRY(vg_boundary_measure(b, &options, &b->read->settings, &view, &sizing,
-                             err));
+  VG_TRY(
+    vg_boundary_measure(b, &options, &b->read->settings, &view, &sizing, err));
   edges = (struct edges){ sizing, far.spacing > 0 ? far.spacing : INFINITY };
   VG_TRY(vg_section_close(&b->surface, &outer, &size, err));
   b->domain.added_farfield = 1;

@@ -70,6 +70,8 @@ vg_status vg_run_section(struct vg_run *r, const struct vg_problem *p,
   st = vg_section_mesh_new(slab, grown, s->section_axis ? 1 : 2, width,
                            &r->section, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
+  r->spans.n_rank = r->size;
+  r->spans.n_thread = r->threads;
   vg_section_mesh_slices(&r->section, !r->rank, &r->slices);
   if (r->outputs) r->outputs->plane = &r->section.plane;
   r->pictures.axis = s->section_axis ? 1 : 2;
