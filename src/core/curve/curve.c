@@ -266,3 +266,12 @@ void vg_outline_at(const struct vg_outline *c, size_t i, double t, double x[2],
                ? fabs(d1[0] * d2[1] - d1[1] * d2[0]) / (speed * sqrt(speed))
                : INFINITY;
 }
+
+double vg_outline_base(const struct vg_outline *c)
+{
+  assert(c->base[0] != SIZE_MAX);
+
+  const double a = c->s[c->base[0]], b = c->s[c->base[1]];
+
+  return b > a ? b - a : c->s[c->n] - a + b;
+}

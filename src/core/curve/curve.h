@@ -47,6 +47,9 @@ void vg_outline_release(struct vg_outline *c);
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
                          struct vg_error *err);
 
+/** Length of the base, which the curve must have. */
+double vg_outline_base(const struct vg_outline *c);
+
 /** Point at the chord length t in interval i, and the curvature there. */
 void vg_outline_at(const struct vg_outline *c, size_t i, double t, double x[2],
                    double *curvature);

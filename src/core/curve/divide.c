@@ -53,11 +53,8 @@ static double request_at_point(const struct division *d, size_t i)
 
   if (z->corner > 0 && c->corner[i]) h = fmin(h, z->corner);
   if (z->nose > 0 && i == c->nose) h = fmin(h, z->nose);
-  if (z->n_base && (i == c->base[0] || i == c->base[1])) {
-    const double a = c->s[c->base[0]], b = c->s[c->base[1]];
-
-    h = fmin(h, (b > a ? b - a : c->s[c->n] - a + b) / (double)z->n_base);
-  }
+  if (z->n_base && (i == c->base[0] || i == c->base[1]))
+    h = fmin(h, vg_outline_base(c) / (double)z->n_base);
   return h;
 }
 

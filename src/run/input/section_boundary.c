@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The boundary of a mesh in two dimensions. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,9 +101,31 @@ static double extent_of(const struct vg_mesh *m)
   return fmax(hi[0] - lo[0], hi[1] - lo[1]);
 }
 
+/* The features to which the spacings refer. */
+static void note_found(const struct vg_boundary *b,
+                       const struct vg_section_found *found)
+{
+  for (size_t i = 0; i < b->surface.n_patch; i++) {
+    const struct vg_section_found *f = &found[i];
+    char edge[120];
+
+    if (f->base > 0)
+      snprintf(edge, sizeof edge, "blunt, %.4g wide (%.3g %% of the chord)",
+               f->base, 100 * f->base / f->chord);
+    else snprintf(edge, sizeof edge, f->is_corner ? "sharp" : "smooth");
+    vg_note(b->notes,
+            "section %s: chord %.6g, trailing edge at (%.6g, %.6g) %s, %zu "
+            "corners, %zu edges",
+            b->surface.patch[i].name, f->chord, f->start[0], f->start[1], edge,
+            f->n_corner, f->n_edge);
+  }
+}
+
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
                                      struct vg_error *err)
 {
+  struct vg_section_found *found = vg_alloc(b->surface.n_patch, sizeof *found);
+  vg_status st;
   const struct vg_settings *s = &b->read->settings;
   const struct vg_remesh_options o = vg_options_remesh(s);
   struct requests q = { b, vg_boundary_sizing(b) };
@@ -123,9 +146,14 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
     .at = request_at,
     .user = &q
   };
+
+  if (!found) return vg_fail_memory(err, "the edges of a section");
   b->flow.kind = VG_FLOW_EXTERNAL;
   b->flow.axis = -1;
-  return vg_section_divide(&b->surface, &sizes, &shares, err);
+  st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
+  if (st >= 0) note_found(b, found);
+  free(found);
+  return st;
 }
 
 /* --- farfield ------------------------------------------------------------ */

@@ -14,8 +14,10 @@
 /* Share of the radius of a farfield that the section may reach. */
 #define REACH 0.9 /* S92 */
 
-enum { SIDE_MIN = 4 }; /* Least number of edges on a quarter of a circle or a
-                          side of a box. */
+enum {
+  SIDE_MIN = 4
+}; /* Least number of edges on a quarter of a circle or a
+      side of a box. */
 
 /* A part of the outer boundary: a quarter of the circle or a side of the box,
  * counter-clockwise. */
@@ -42,16 +44,14 @@ static void at_side(const struct side *o, double u, double x[2])
     return;
   }
   vg_quarter_turn(u, &sine, &cosine);
-  x[0] = b->centre[0] +
-         b->radius * (o->k == 0   ? cosine
-                      : o->k == 1 ? -sine
-                      : o->k == 2 ? -cosine
-                                  : sine);
-  x[1] = b->centre[1] +
-         b->radius * (o->k == 0   ? sine
-                      : o->k == 1 ? cosine
-                      : o->k == 2 ? -sine
-                                  : -cosine);
+  x[0] = b->centre[0] + b->radius * (o->k == 0   ? cosine
+                                     : o->k == 1 ? -sine
+                                     : o->k == 2 ? -cosine
+                                                 : sine);
+  x[1] = b->centre[1] + b->radius * (o->k == 0   ? sine
+                                     : o->k == 1 ? cosine
+                                     : o->k == 2 ? -sine
+                                                 : -cosine);
 }
 
 static double size_on_side(void *user, double s)
@@ -84,9 +84,8 @@ static vg_status make_outer(const struct vg_section_outer *outer,
     st = vg_graded_steps(o.length, size_on_side, &o, SIDE_MIN, &n_step, &step,
                          err);
     if (st < 0)
-      return vg_stops(&size->stop)
-             ? vg_fail(err, VG_ERR_STOPPED, "interrupted")
-             : st;
+      return vg_stops(&size->stop) ? vg_fail(err, VG_ERR_STOPPED, "interrupted")
+                                   : st;
     if (vg_reserve(x, &cap, *n + n_step, sizeof **x)) {
       free(step);
       return vg_fail_memory(err, "the farfield");
@@ -234,7 +233,8 @@ static void put_outer(struct vg_mesh *m, size_t n_wall, size_t n_outer,
   for (uint32_t i = 0; i < n_outer; i++) {
     const uint32_t a = (uint32_t)n_wall + i;
     const uint32_t b = (uint32_t)n_wall + (i + 1 < n_outer ? i + 1 : 0);
-    const uint32_t tri[2][3] = { { b, a, half + a }, { b, half + a, half + b } };
+    const uint32_t tri[2][3] = { { b, a, half + a },
+                                 { b, half + a, half + b } };
 
     memcpy(m->tri + m->n_tri, tri, sizeof tri);
     m->tri_patch[m->n_tri++] = patch;

@@ -221,7 +221,8 @@ vg_status vg_section_mesh(const struct vg_mesh *slab,
                      .err = err };
   vg_status st = VG_OK;
 
-  for (uint32_t i = 0; i < b.n_strip; i++) VG_TRY(add_point(&b, slab->point[i]));
+  for (uint32_t i = 0; i < b.n_strip; i++)
+    VG_TRY(add_point(&b, slab->point[i]));
   if (layers) VG_TRY(put_layers(&b));
   VG_TRY(put_field(&b));
   VG_TRY(put_boundary(&b));
@@ -344,20 +345,18 @@ static void put_slice(const struct vg_slices *s, struct vg_slice *slice)
 void vg_section_mesh_slices(const struct vg_section_mesh *m, int is_served,
                             struct vg_slices *out)
 {
-  *out = (struct vg_slices){ .n_point = m->solid.n_point,
-                             .n_boundary_point = m->solid.n_point,
-                             .n_layer_point = m->plane.n_layer_tri +
-                                                  m->plane.n_quad
-                                                ? m->solid.n_point
-                                                : 0,
-                             .boundary = &m->frame,
-                             .n_slice = is_served ? 2 : 0,
-                             .n_served = is_served
-                                         ? m->solid.n_pri + m->solid.n_hex
-                                         : 0,
-                             .get = get_slice,
-                             .put = put_slice,
-                             .user = (void *)(uintptr_t)m };
+  *out = (struct vg_slices){
+    .n_point = m->solid.n_point,
+    .n_boundary_point = m->solid.n_point,
+    .n_layer_point = m->plane.n_layer_tri + m->plane.n_quad ? m->solid.n_point
+                                                            : 0,
+    .boundary = &m->frame,
+    .n_slice = is_served ? 2 : 0,
+    .n_served = is_served ? m->solid.n_pri + m->solid.n_hex : 0,
+    .get = get_slice,
+    .put = put_slice,
+    .user = (void *)(uintptr_t)m
+  };
   out->n_cell[VG_SLICE_PRI] = m->solid.n_pri;
   out->n_cell[VG_SLICE_HEX] = m->solid.n_hex;
   out->n_layer_cell[VG_SLICE_PRI] = m->plane.n_layer_tri;

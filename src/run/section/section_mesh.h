@@ -34,13 +34,14 @@ vg_status vg_section_tops(const struct vg_mesh *slab,
 struct vg_section_mesh {
   struct vg_plane_mesh plane;
   struct vg_mesh solid;
-  struct vg_mesh frame; /* Boundary of `solid`, borrowed: no points and cells. */
-  uint32_t *id;        /* [solid.n_point] 0, 1, ... */
-  uint64_t n_front;    /* Faces of the field that have no other cell in it. */
+  struct vg_mesh
+    frame;          /* Boundary of `solid`, borrowed: no points and cells. */
+  uint32_t *id;     /* [solid.n_point] 0, 1, ... */
+  uint64_t n_front; /* Faces of the field that have no other cell in it. */
 };
 #define VG_SECTION_MESH_INIT                                                   \
   {                                                                            \
-    VG_PLANE_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT, NULL, 0                                  \
+    VG_PLANE_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT, NULL, 0                    \
   } /* releasing this is a no-op */
 
 void vg_section_mesh_release(struct vg_section_mesh *m);

@@ -54,8 +54,7 @@ static void put_strip(struct vg_mesh *m, uint32_t a, uint32_t b, uint32_t half,
                                        { { 0, 1, 3 }, { 1, 2, 3 } } };
 
   for (int t = 0; t < 2; t++) {
-    for (int k = 0; k < 3; k++)
-      m->tri[m->n_tri][k] = q[corner[is_odd][t][k]];
+    for (int k = 0; k < 3; k++) m->tri[m->n_tri][k] = q[corner[is_odd][t][k]];
     m->tri_patch[m->n_tri++] = patch;
   }
 }
@@ -92,9 +91,8 @@ static vg_status make_strip(const struct loops *l, double width,
   }
   for (size_t e = 0, first = 0; e < l->n; first = l->end[e++])
     for (size_t i = first; i < l->end[e]; i++)
-      put_strip(m, (uint32_t)i,
-                (uint32_t)(i + 1 < l->end[e] ? i + 1 : first), (uint32_t)n,
-                (uint32_t)e, (int)(i & 1));
+      put_strip(m, (uint32_t)i, (uint32_t)(i + 1 < l->end[e] ? i + 1 : first),
+                (uint32_t)n, (uint32_t)e, (int)(i & 1));
   return VG_OK;
 }
 
@@ -124,8 +122,7 @@ static void name_patch(const struct vg_section *s, size_t e,
                               .bc = VG_BC_NONE,
                               .bc_fun3d = VG_BC_NONE };
   if (!*title && s->n == 1) snprintf(patch->name, VG_NAME_MAX, "aerofoil");
-  else if (!*title)
-    snprintf(patch->name, VG_NAME_MAX, "element_%zu", e + 1);
+  else if (!*title) snprintf(patch->name, VG_NAME_MAX, "element_%zu", e + 1);
   else snprintf(patch->name, VG_NAME_MAX, "%s", title);
   for (char *c = patch->name; *c; c++)
     if (isspace((unsigned char)*c)) *c = '_';
@@ -174,10 +171,22 @@ static vg_status check_start(const struct vg_outline *c, const char *name,
                  name, c->x[0][0], c->x[0][1], c->x[at][0], c->x[at][1]);
 }
 
+static void describe(const struct vg_outline *c, size_t n_edge,
+                     struct vg_section_found *found)
+{
+  *found = (struct vg_section_found){ .n_corner = c->n_corner,
+                                      .n_edge = n_edge,
+                                      .chord = c->chord,
+                                      .start = { c->x[0][0], c->x[0][1] },
+                                      .is_corner = c->corner[0] != 0 };
+  if (c->base[0] != SIZE_MAX) found->base = vg_outline_base(c);
+}
+
 static vg_status divide_loop(const struct loops *from, size_t first, size_t n,
                              const char *name, struct vg_outline_sizes sizes,
                              const struct vg_section_shares *shares,
-                             struct loops *to, struct vg_error *err)
+                             struct loops *to, struct vg_section_found *found,
+                             struct vg_error *err)
 {
   struct vg_outline c = VG_OUTLINE_INIT;
   double(*x)[2] = NULL;
@@ -186,10 +195,10 @@ static vg_status divide_loop(const struct loops *from, size_t first, size_t n,
 
   VG_TRY(vg_outline_new(n, (const double(*)[2])from->x + first, &c, err));
   VG_TRY(check_start(&c, name, err));
-  sizes.corner = fmax(shares->corner * c.chord, shares->corner > 0
-                                                  ? sizes.smallest : 0);
-  sizes.nose = fmax(shares->nose * c.chord, shares->nose > 0
-                                              ? sizes.smallest : 0);
+  sizes.corner = fmax(shares->corner * c.chord,
+                      shares->corner > 0 ? sizes.smallest : 0);
+  sizes.nose = fmax(shares->nose * c.chord,
+                    shares->nose > 0 ? sizes.smallest : 0);
   VG_TRY(vg_outline_divide(&c, &sizes, &n_x, &x, err));
   if (vg_reserve(&to->x, &to->cap, to->n_point + n_x, sizeof *to->x)) {
     st = vg_fail_memory(err, "the edges of a section");
@@ -197,6 +206,7 @@ static vg_status divide_loop(const struct loops *from, size_t first, size_t n,
   }
   memcpy(to->x + to->n_point, x, n_x * sizeof *x);
   to->n_point += n_x;
+  describe(&c, n_x, found);
 done:
   free(x);
   vg_outline_release(&c);
@@ -206,6 +216,7 @@ done:
 vg_status vg_section_divide(struct vg_mesh *strip,
                             const struct vg_outline_sizes *sizes,
                             const struct vg_section_shares *shares,
+                            struct vg_section_found *found,
                             struct vg_error *err)
 {
   struct loops from = { 0 }, to = { 0 };
@@ -219,7 +230,7 @@ vg_status vg_section_divide(struct vg_mesh *strip,
   }
   for (size_t e = 0, first = 0; e < from.n; first = from.end[e++]) {
     VG_TRY(divide_loop(&from, first, from.end[e] - first, strip->patch[e].name,
-                       *sizes, shares, &to, err));
+                       *sizes, shares, &to, &found[e], err));
     to.end[to.n++] = to.n_point;
   }
   st = make_strip(&to, width_of(&to), strip, err);

@@ -31,16 +31,27 @@ struct vg_section_shares {
   double nose, corner; /* 0: not given. */
 };
 
+/** What was found on the curve of an element. */
+struct vg_section_found {
+  size_t n_corner, n_edge;
+  double chord, base; /* base: length of a blunt trailing edge; 0: sharp or
+                         smooth. */
+  double start[2];    /* First point. */
+  int is_corner;      /* 1: the first point is a corner. */
+};
+
 /** Replaces the points of a strip by those of the curves through them with the
  * requested edges (core/curve/curve.h). A blunt trailing edge has
  * sizes->n_base edges.
  *
  * @param sizes  corner and nose are not used
+ * @param found  out: [strip->n_patch]
  * VG_ERR_INPUT: the first point of an element with corners is not its trailing
  * edge; the message gives the corner. VG_ERR_MEMORY. */
 vg_status vg_section_divide(struct vg_mesh *strip,
                             const struct vg_outline_sizes *sizes,
                             const struct vg_section_shares *shares,
+                            struct vg_section_found *found,
                             struct vg_error *err);
 
 /** A closed boundary around the section. */
