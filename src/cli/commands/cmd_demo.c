@@ -17,7 +17,6 @@
 #include "run/common/folder.h"
 #include "run/common/ranges.h"
 #include "run/common/text.h"
-#include "run/input/input.h"
 #include "run/settings/deck.h"
 #include "run/stages/output.h"
 
@@ -303,7 +302,6 @@ static void set_section(const struct vg_demo_case *c, size_t n_cell,
                         struct vg_settings *s)
 {
   vg_settings_default(s);
-  vg_section_defaults(s);
   snprintf(s->title, sizeof s->title, "Vanguard demo: %s", c->name);
   s->layer.y_plus = 1;
   s->layer.reynolds = 6e6;

@@ -150,6 +150,7 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_problem_open(p, a->project, a->deck, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->asked, err));
+  vg_section_complete(&p->read, &p->asked);
   vg_mesh_log_settings(&r->mesh, &p->asked);
   vg_resolve_write(&p->asked, list);
   st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);

@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 
-/* S91: turning angles of corners, in radians, and the ratio of the curvature
+/* S95: turning angles of corners, in radians, and the ratio of the curvature
  * there to that at the next points. */
 #define ALWAYS 1.75  /* 100 degrees */
 #define BLUNT 1.05   /* 60 degrees */
@@ -17,7 +17,7 @@
 #define HALF_PI 1.5707963267948966
 
 /* Longest base of a blunt trailing edge, relative to the chord. */
-#define BASE 0.1 /* S91 */
+#define BASE 0.1 /* S95 */
 
 enum {
   OVERLAP = 32

@@ -288,7 +288,6 @@ vg_status vg_problem_open_deck(struct vg_problem *p, struct vg_error *err)
 
   vg_settings_default(s);
   p->read.is_section = vg_section_is(f->surface);
-  if (p->read.is_section) vg_section_defaults(s);
   snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : f->stem);
   vg_text_trim_end(s->title);
   if (!*f->deck) return VG_OK;
@@ -772,6 +771,7 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
   vg_status st;
 
   r->notes = &p->notes;
+  vg_section_complete(r, &p->asked);
   vg_helper_set_folder(p->asked.helpers);
   st = read_asides(&p->asked, r, err);
   if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, show, st, err);

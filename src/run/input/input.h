@@ -327,9 +327,9 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
 vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
                                         struct vg_error *err);
 
-/** Defaults of the settings of a plane section, where they differ from those of
- * a surface. */
-void vg_section_defaults(struct vg_settings *s);
+/** Fills in settings of a plane section that were not given and differ from
+ * those of a surface: cells and fan_angle. Does nothing for a surface. */
+void vg_section_complete(const struct vg_read *read, struct vg_settings *s);
 
 /** VG_ERR_UNSUPPORTED for a plane section, which only vanguard mesh and check
  * take. Called after vg_problem_open. */

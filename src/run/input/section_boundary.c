@@ -12,13 +12,14 @@
 #include "run/section/section_surface.h"
 #include "run/settings/plan_options.h"
 
-#define FAN_ANGLE 60.0 /* S92: sharp and blunt trailing edges */
-#define SIZE 0.02      /* S92: largest edge over the length of the section */
+#define FAN_ANGLE 60.0 /* S96: sharp and blunt trailing edges */
+#define SIZE 0.02      /* S96: largest edge over the length of the section */
 
-void vg_section_defaults(struct vg_settings *s)
+void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
 {
-  s->cells = VG_LAYER_HEX;
-  s->layer.fan_angle = FAN_ANGLE;
+  if (!read->is_section) return;
+  if (s->cells == VG_LAYER_TETS) s->cells = VG_LAYER_HEX;
+  if (isnan(s->layer.fan_angle)) s->layer.fan_angle = FAN_ANGLE;
 }
 
 vg_status vg_problem_refuse_section(const struct vg_problem *p,
@@ -38,8 +39,7 @@ static vg_status refuse_settings(const struct vg_read *r, struct vg_error *err)
   const struct vg_settings *s = &r->settings;
   const char *bad = NULL;
 
-  if (s->cells == VG_LAYER_TETS) bad = "cells is tets";
-  else if (s->wrap > 0) bad = "wrap is given";
+  if (s->wrap > 0) bad = "wrap is given";
   else if (s->close_holes) bad = "close_holes is yes";
   else if (s->farfield.kind == VG_DOMAIN_NONE) bad = "farfield is none";
   else if (s->farfield.kind == VG_DOMAIN_MACH) bad = "farfield is mach";

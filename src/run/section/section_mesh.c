@@ -9,6 +9,8 @@
 #include "base/memory.h"
 #include "run/section/section_surface.h"
 
+enum { SYMMETRY_X = 6661 }; /* FUN3D's condition; y and z follow. */
+
 struct build {
   const struct vg_mesh *slab;
   const struct vg_columns *c; /* NULL without layers. */
@@ -286,11 +288,13 @@ vg_status vg_section_mesh_new(const struct vg_mesh *slab,
                               struct vg_error *err)
 {
   struct vg_section_mesh m = VG_SECTION_MESH_INIT;
+  struct vg_patch plane[2];
   vg_status st;
 
   VG_TRY(vg_section_mesh(slab, layers, &m.plane, err));
-  VG_TRY(vg_plane_mesh_extrude(&m.plane, axis, width,
-                               slab->patch + slab->n_patch - 2, &m.solid, err));
+  memcpy(plane, slab->patch + slab->n_patch - 2, sizeof plane);
+  plane[0].bc_fun3d = plane[1].bc_fun3d = SYMMETRY_X + axis;
+  VG_TRY(vg_plane_mesh_extrude(&m.plane, axis, width, plane, &m.solid, err));
   m.id = vg_alloc(m.solid.n_point, sizeof *m.id);
   if (!m.id) {
     st = vg_fail_memory(err, "the mesh one cell thick");

@@ -47,7 +47,8 @@ struct vg_section_mesh {
 void vg_section_mesh_release(struct vg_section_mesh *m);
 
 /** Makes both meshes. axis and width as in vg_plane_mesh_extrude; the planes
- * have the patches "back" and "front" of the slab. VG_ERR_MEMORY,
+ * have the patches "back" and "front" of the slab, with FUN3D's condition of a
+ * plane normal to the axis. VG_ERR_MEMORY,
  * VG_ERR_UNSUPPORTED. */
 vg_status vg_section_mesh_new(const struct vg_mesh *slab,
                               const struct vg_layers *layers, int axis,

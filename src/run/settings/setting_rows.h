@@ -365,11 +365,11 @@ VG_TEXT_ROW(layer, slip, VG_LIST_MAX, "slip", "",
   .unit = "", .check = vg_patch_list_check,
   .pattern = vg_patch_list_pattern, .help = "Patches without layers "
   "regardless of their boundary condition, as in 4,7-9,flap?")
-VG_ROW(REAL, layer, fan_angle, "fan_angle", layers.fan_angle,
-  .lo = 0, .hi = 180, .unit = "degrees", .help = "Convex edges that turn by "
-  "more than this angle get fans (several columns per point, multiple "
-  "normals); 0: only points from which no single direction sees all faces; "
-  "180: no fans")
+VG_ROW(REAL, layer, fan_angle, "fan_angle", NAN,
+  .lo = 0, .hi = 180, .optional = 1, .unit = "degrees", .help = "Convex edges "
+  "that turn by more than this angle get fans (several columns per point, "
+  "multiple normals); 0: only points from which no single direction sees all "
+  "faces; 180: no fans; -: 0, or 60 for a plane section")
 VG_ROW(REAL, layer, gap, "layer_gap", layers.gap,
   .hi = 0.49, .above_lo = 1, .unit = "", .help = "Largest fraction of the "
   "distance to the opposite surface that layers may take up")

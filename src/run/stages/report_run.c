@@ -7,6 +7,7 @@
 #include "base/version.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
+#include "run/section/section_surface.h"
 
 static json_t *files_json(const struct vg_run_report *r)
 {
@@ -122,6 +123,26 @@ json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
   return o;
 }
 
+static void print_count(FILE *to, const char *name, size_t n)
+{
+  char count[32];
+
+  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
+}
+
+/* The slab of a section is of no interest to the user. */
+static void print_section(FILE *to, const struct vg_problem *p)
+{
+  const struct vg_mesh *m = vg_problem_surface(p);
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  fprintf(to, "\nSection\n");
+  print_count(to, "edges, with the farfield", vg_section_points(m));
+  fprintf(to, "  bounding box             %.6g %.6g to %.6g %.6g\n", lo[0],
+          lo[1], hi[0], hi[1]);
+}
+
 void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
 {
   const struct vg_problem *p = r->problem;
@@ -132,6 +153,10 @@ void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
   vg_report_flow_text(to, &b->flow, b->domain.added_farfield);
   for (size_t i = 0; i < p->notes.n; i++)
     fprintf(to, "  note: %s\n", p->notes.text[i]);
+  if (p->read.is_section) {
+    print_section(to, p);
+    return;
+  }
   fprintf(to, "\nSurface\n");
   vg_report_size_text(to, m);
   if (b->n_welded || b->n_dropped)
@@ -142,13 +167,6 @@ void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
   if (b->read)
     vg_report_surface_text(to, m, &b->check, r->problem->read.unit,
                            vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
-}
-
-static void print_count(FILE *to, const char *name, size_t n)
-{
-  char count[32];
-
-  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
 }
 
 static void print_times(FILE *to, const struct vg_run_report *r)
