@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/section/section.h: reads plane sections of aerofoils, text files of
- * coordinates x y (".dat", formats.md 4.8), for meshes in two dimensions. A
+ * coordinates x y (".dat", formats.md 3.4), for meshes in two dimensions. A
  * section has one or several elements. Uses io/stream/stream.h.
  *
  * A line that does not begin with a number is the title of the next element.

@@ -25,9 +25,9 @@
 /* Share of the height of a triangle that a corner may move sideways. */
 #define LEAN 0.3
 
-/* Length of the edge of triangle t in the plane of point p of a strip; 0: the
+/* Length of the edge of triangle t in the plane of point p of a slab; 0: the
  * triangle has none, or p is not on it. */
-static double strip_edge(const struct vg_mesh *m, uint32_t t, uint32_t p)
+static double slab_edge(const struct vg_mesh *m, uint32_t t, uint32_t p)
 {
   for (int k = 0; k < 3; k++) {
     const uint32_t a = m->tri[t][k], b = m->tri[t][(k + 1) % 3];
@@ -38,8 +38,8 @@ static double strip_edge(const struct vg_mesh *m, uint32_t t, uint32_t p)
   return 0;
 }
 
-/* Mean length of the edges in the plane of each column of a strip. */
-static void strip_body(void *context, size_t first, size_t end, int worker)
+/* Mean length of the edges in the plane of each column of a slab. */
+static void slab_body(void *context, size_t first, size_t end, int worker)
 {
   struct vg_layer_work *w = context;
 
@@ -52,7 +52,7 @@ static void strip_body(void *context, size_t first, size_t end, int worker)
       const uint32_t tri = w->c->face_tri[w->t.corner[j] / 3];
       const double l = tri == VG_NO_INDEX
                        ? 0
-                       : strip_edge(w->m, tri, w->c->column[i].root);
+                       : slab_edge(w->m, tri, w->c->column[i].root);
 
       sum += l;
       n += l > 0;
@@ -118,7 +118,7 @@ static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
 
   if (!other) return vg_fail_memory(err, "the layers");
   vg_parallel_for(w->o->threads, n, GRAIN,
-                  w->o->is_strip ? strip_body : edge_body, w);
+                  w->o->is_slab ? slab_body : edge_body, w);
   for (int s = 0; s < EDGE_SWEEPS; s++) {
     struct relax r = { w, w->edge, other };
 

@@ -152,8 +152,8 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
   if (!is_plane(&b->surface)) return VG_OK;
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: all triangles lie in one plane: such a surface bounds no "
-                 "volume. Meshes are three-dimensional: give a body, or "
-                 "extrude the section in the CAD system",
+                 "volume. Give a body, or for a mesh in two dimensions "
+                 "the coordinates of the section in a .dat",
                  b->read->files.stem);
 }
 

@@ -550,7 +550,7 @@ static void set_options(struct vg_layer_stage *s, const struct vg_read *read)
   struct vg_layer_options *o = &s->options;
 
   *o = vg_options_layers(set);
-  o->is_strip = read->is_section;
+  o->is_slab = read->is_section;
   o->patch = s->request;
   o->law_at = !s->laws ? NULL : s->laws->at.n ? height_at : law_at;
   o->law_user = s->laws;
