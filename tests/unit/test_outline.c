@@ -148,10 +148,10 @@ static struct division divide(const struct vg_outline *c,
 static void follows_the_requests(void **state)
 {
   const struct vg_outline_sizes sizes = { .largest = 0.02,
-                                        .per_turn = 36,
-                                        .growth = 1.2,
-                                        .corner = 0.001,
-                                        .nose = 0.0005 };
+                                          .per_turn = 36,
+                                          .growth = 1.2,
+                                          .corner = 0.001,
+                                          .nose = 0.0005 };
   double x[MOST][2];
   struct vg_outline c = VG_OUTLINE_INIT;
   struct division d;
@@ -209,8 +209,8 @@ static void counts_the_base(void **state)
 static void refuses_tiny_edges(void **state)
 {
   const struct vg_outline_sizes sizes = { .largest = 1e-12,
-                                        .per_turn = 36,
-                                        .growth = 1.2 };
+                                          .per_turn = 36,
+                                          .growth = 1.2 };
   struct vg_error err = VG_ERROR_INIT;
   double x[MOST][2], (*out)[2];
   struct vg_outline c = VG_OUTLINE_INIT;

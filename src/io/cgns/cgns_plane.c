@@ -51,8 +51,7 @@ static vg_status put_zone(struct plane *p, int64_t root, struct vg_error *err)
   VG_TRY(add(p, root, "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", 1, 1,
              0, &version, NULL, err));
   VG_TRY(add(p, root, "Base", "CGNSBase_t", "I4", 1, 2, 0, two, &p->base, err));
-  VG_TRY(
-    add(p, p->base, "Zone", "Zone_t", "I4", 2, 1, 3, size, &p->zone, err));
+  VG_TRY(add(p, p->base, "Zone", "Zone_t", "I4", 2, 1, 3, size, &p->zone, err));
   st = add_text(p, p->zone, "ZoneType", "ZoneType_t", "Unstructured", NULL,
                 err);
 done:
@@ -94,8 +93,8 @@ static vg_status put_section(struct plane *p, const char *name, int32_t type,
   v = vg_alloc(n * n_node, sizeof *v);
   if (!v) return vg_fail_memory(err, "the nodes of a CGNS file");
   for (size_t i = 0; i < n * n_node; i++) v[i] = (int32_t)node[i] + 1;
-  VG_TRY(add(p, p->zone, name, "Elements_t", "I4", 1, 2, 0, kind, &section,
-             err));
+  VG_TRY(
+    add(p, p->zone, name, "Elements_t", "I4", 1, 2, 0, kind, &section, err));
   VG_TRY(add(p, section, "ElementRange", "IndexRange_t", "I4", 1, 2, 0, range,
              NULL, err));
   VG_TRY(add(p, section, "ElementConnectivity", "DataArray_t", "I4", 1,
@@ -120,18 +119,15 @@ static vg_status put_patch(struct plane *p, size_t first, size_t end,
   vg_status st;
 
   snprintf(number, sizeof number, "%" PRId32, patch->id);
-  VG_TRY(
-    put_section(p, word, BAR_2, end - first, 2, p->m->edge[first], err));
+  VG_TRY(put_section(p, word, BAR_2, end - first, 2, p->m->edge[first], err));
   VG_TRY(add_text(p, p->boundary, word, "BC_t", "FamilySpecified", &id, err));
   VG_TRY(
     add(p, id, "PointRange", "IndexRange_t", "I4", 2, 1, 2, range, NULL, err));
   VG_TRY(
     add_text(p, id, "GridLocation", "GridLocation_t", "EdgeCenter", NULL, err));
   VG_TRY(add_text(p, id, "FamilyName", "FamilyName_t", word, NULL, err));
-  VG_TRY(
-    add(p, p->base, word, "Family_t", "MT", 0, 0, 0, NULL, &id, err));
-  VG_TRY(
-    add_text(p, id, VG_CGNS_NUMBER, "Descriptor_t", number, NULL, err));
+  VG_TRY(add(p, p->base, word, "Family_t", "MT", 0, 0, 0, NULL, &id, err));
+  VG_TRY(add_text(p, id, VG_CGNS_NUMBER, "Descriptor_t", number, NULL, err));
   st = add_text(p, id, "FamilyBC", "FamilyBC_t", type ? type : "UserDefined",
                 NULL, err);
 done:
@@ -185,8 +181,8 @@ done:
 /* No patch may have the name of another node. */
 static vg_status make_words(struct plane *p, struct vg_error *err)
 {
-  static const char *const taken[] = { "Zone",   "ZoneType",
-                                       "ZoneBC", "GridCoordinates",
+  static const char *const taken[] = { "Zone",           "ZoneType",
+                                       "ZoneBC",         "GridCoordinates",
                                        "Quadrilaterals", "Triangles" };
   struct vg_mesh m = { .n_patch = p->m->n_patch };
 

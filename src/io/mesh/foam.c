@@ -72,9 +72,8 @@ static const char *patch_type(const struct vg_patch *p, int is_planar,
 
 static int is_symmetry(const struct vg_patch *p)
 {
-  return p->bc == 1 ||
-         (p->bc == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE &&
-          vg_bc_to_usm3d(p->bc_fun3d) == 1);
+  return p->bc == 1 || (p->bc == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE &&
+                        vg_bc_to_usm3d(p->bc_fun3d) == 1);
 }
 
 /* Whether a mesh is one cell thick, for a flow in two dimensions: each cell is

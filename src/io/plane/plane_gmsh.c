@@ -90,8 +90,7 @@ static void put_nodes(struct vg_output *out, const struct vg_plane_mesh *m)
 {
   vg_output_format(out, "$Nodes\n1 %zu 1 %zu\n2 %d 0 %zu\n", m->n_point,
                    m->n_point, tag_of(m->n_patch), m->n_point);
-  for (size_t i = 0; i < m->n_point; i++)
-    vg_output_format(out, "%zu\n", i + 1);
+  for (size_t i = 0; i < m->n_point; i++) vg_output_format(out, "%zu\n", i + 1);
   for (size_t i = 0; i < m->n_point; i++) {
     vg_output_real(out, m->x[i][0]);
     vg_output_text(out, " ");

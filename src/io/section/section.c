@@ -12,10 +12,10 @@
 
 /* A gap between the first and the last point, relative to the extent of the
  * curve, up to which it is a blunt trailing edge. */
-#define GAP 0.1 /* S95 */
+#define GAP 0.1 /* S97 */
 /* Distance of the leading points of both sides in Lednicer's order, relative to
  * the extent. */
-#define NOSE 0.05 /* S95 */
+#define NOSE 0.05 /* S97 */
 #define SEPARATOR 999
 
 enum { POINTS_MIN = 3, SHOWN = 40 };

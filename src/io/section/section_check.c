@@ -30,7 +30,7 @@ static int is_between(const double *a, const double *b, const double *p)
                      : b[k] <= p[k] && p[k] <= a[k];
 }
 
-/* Whether two segments have a point in common. */
+/* Whether two segments share a point. */
 static int touch(const double *a, const double *b, const double *c,
                  const double *d)
 {

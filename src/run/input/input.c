@@ -221,8 +221,8 @@ static vg_status refuse_absent(const char *name, struct vg_error *err)
       err, VG_ERR_INPUT,
       "%s: there is no such file, and no project found: there is "
       "neither %s.d3m nor %s.front nor a surface such as "
-      "%s.lb8.ugrid or %s.stl, nor a plane section %s.dat; give the stem of a project or the "
-      "complete name of a surface file",
+      "%s.lb8.ugrid or %s.stl, nor a plane section %s.dat; give the stem of "
+      "a project or the complete name of a surface file",
       name, name, name, name, name, name);
   free(folder);
   return st;

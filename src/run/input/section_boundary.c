@@ -41,8 +41,8 @@ static vg_status refuse_settings(const struct vg_read *r, struct vg_error *err)
 
   if (s->wrap > 0) bad = "wrap is given";
   else if (s->close_holes) bad = "close_holes is yes";
-  else if (s->farfield.kind == VG_DOMAIN_NONE) bad = "farfield is none";
-  else if (s->farfield.kind == VG_DOMAIN_MACH) bad = "farfield is mach";
+  else if (s->farfield.kind == VG_DOMAIN_NONE) bad = "farfield none is given";
+  else if (s->farfield.kind == VG_DOMAIN_MACH) bad = "farfield mach is given";
   else if (s->flow == VG_FLOW_INTERNAL) bad = "flow is internal";
   else if (s->half != VG_HALF_AUTO && s->half != VG_HALF_NO)
     bad = "a half model is requested";

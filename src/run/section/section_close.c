@@ -12,7 +12,7 @@
 
 #define QUARTER 1.5707963267948966
 /* Share of the radius of a farfield that the section may reach. */
-#define REACH 0.9 /* S96 */
+#define REACH 0.9 /* S98 */
 
 enum {
   SIDE_MIN = 4

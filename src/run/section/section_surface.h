@@ -31,7 +31,7 @@ struct vg_section_shares {
   double nose, corner; /* 0: not given. */
 };
 
-/** What was found on the curve of an element. */
+/** Features of the curve of an element. */
 struct vg_section_found {
   size_t n_corner, n_edge;
   double chord, base; /* base: length of a blunt trailing edge; 0: sharp or

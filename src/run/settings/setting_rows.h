@@ -197,9 +197,9 @@ VG_ROW(REAL, plain, section_width, "section_width", 0,
   "dimensions where it is written one cell thick; 0: the largest chord")
 VG_ROW(WORD, plain, section_axis, "section_axis", 0,
   .use = VG_USE_SECTION, .words = axis_words, .unit = "",
-  .help = "Axis normal to a mesh in two dimensions where it is written one cell "
-  "thick. z: the coordinates of the section are x and y; y: they are x and z, "
-  "as FUN3D requires")
+  .help = "Axis normal to a mesh in two dimensions where it is written one "
+  "cell thick. z: the coordinates of the section are x and y; y: they are x "
+  "and z, as FUN3D requires")
 VG_ROW(REAL, plain, gap_edges, "gap_edges", 0,
   .topic = VG_TOPIC_REMESH,
   .hi = 1000, .unit = "edges", .help = "Minimum number of edges across the "

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/run_parts.h: steps of vg_run_mesh that meshes of surfaces and of
- * plane sections have in common. Private to run/stages. */
+ * plane sections share. Private to run/stages. */
 #ifndef VG_RUN_STAGES_RUN_PARTS_H
 #define VG_RUN_STAGES_RUN_PARTS_H
 

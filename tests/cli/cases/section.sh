@@ -109,7 +109,7 @@ exits 1
 says err "is a plane section"
 vanguard mesh -q -p two.dat --out h --farfield none
 exits 1
-says err "farfield is none"
+says err "farfield none is given"
 vanguard mesh -q -p two.dat --out h --farfield-size 0.5
 exits 1
 says err "does not contain the section"
