@@ -65,16 +65,18 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                                               r->run->sheets));
   json_object_set_new(o, "limits_missed",
                       vg_report_mesh_limits_json(&p->asked, &r->run->judge));
-  json_object_set_new(o, "fill",
-                      vg_report_fill_json(&r->run->partition.fill,
-                                          r->run->n_field_cell));
-  json_object_set_new(o, "partition", vg_report_partition_json(r->run));
+  if (!p->read.is_section) {
+    json_object_set_new(o, "fill",
+                        vg_report_fill_json(&r->run->partition.fill,
+                                            r->run->n_field_cell));
+    json_object_set_new(o, "partition", vg_report_partition_json(r->run));
+  }
   json_object_set_new(o, "memory_bytes", vg_report_memory_json(r->run));
-  if (r->layers->is_on) {
+  if (r->layers->is_on && !p->read.is_section)
     json_object_set_new(o, "field",
                         vg_report_mesh_json(&r->run->field_judge, m));
+  if (r->layers->is_on)
     json_object_set_new(o, "layers", vg_report_layers_json(r->layers, m));
-  }
   if (r->run->parts)
     json_object_set_new(o, "solver_parts",
                         vg_report_solver_json(&r->run->solver));
