@@ -288,6 +288,7 @@ vanguard_status vanguard_open(vanguard_job *job, const char *project,
 
   VG_TRY(vg_job_needs(job, project, "project"));
   VG_TRY(vg_problem_open(&p, project, deck, &job->err));
+  VG_TRY(vg_problem_refuse_section(&p, &job->err));
   if (keep_text(&job->project, project) || keep_text(&job->deck, deck)) {
     st = vg_fail_memory(&job->err, "the names of the project");
     goto done;

@@ -403,7 +403,7 @@ static void test_body(void **state)
   m.patch = patch;
   vg_body_patches(&m, NULL, on);
   assert_true(!on[0] && on[1]);
-  assert_int_equal(vg_cut_plan(&m, NULL, &plan, NULL), VG_OK);
+  assert_int_equal(vg_cut_plan(&m, NULL, 0, &plan, NULL), VG_OK);
   /* The body is flat across y, so there is no cut across y and no close-up of
    * its ends. The cuts across x and z and the cut of the domain remain. */
   for (size_t i = 0; i < plan.n; i++) {

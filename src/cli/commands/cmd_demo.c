@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard demo: complete example projects that need no external data. */
 #define _GNU_SOURCE
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
 #include "cli/examples/demo.h"
+#include "cli/examples/demo_aerofoil.h"
 #include "io/mesh/format.h"
 #include "io/vgrid/mapbc.h"
 #include "run/common/folder.h"
@@ -49,15 +51,24 @@ static error_t option(int key, char *arg, struct argp_state *state)
   }
 }
 
-static int list_cases(void)
+static void list(const struct vg_demo_case *c, size_t n)
 {
-  size_t n;
-  const struct vg_demo_case *c = vg_demo_cases(&n);
   char count[32];
 
   for (size_t i = 0; i < n; i++)
     printf("%-16s %s (%s cells)\n", c[i].name, c[i].summary,
            vg_text_count(c[i].n_cell, count));
+}
+
+static int list_cases(void)
+{
+  const struct vg_demo_case *c;
+  size_t n;
+
+  c = vg_demo_cases(&n);
+  list(c, n);
+  c = vg_demo_sections(&n);
+  list(c, n);
   return VG_EXIT_DONE;
 }
 
@@ -279,8 +290,100 @@ done:
   return st;
 }
 
+/* --- plane sections ------------------------------------------------------ */
+
+static const char section_comment[] =
+  "# A mesh in two dimensions: the section is in the .dat. Layers grow on it;\n"
+  "# their first height follows from y_plus, reynolds and reference_length.\n"
+  "# te_spacing, le_spacing and te_cells request edges of the section.\n";
+
+/* All edges and layers follow the requested number of cells. */
+static void set_section(const struct vg_demo_case *c, size_t n_cell,
+                        struct vg_settings *s)
+{
+  vg_settings_default(s);
+  snprintf(s->title, sizeof s->title, "Vanguard demo: %s", c->name);
+  s->layer.y_plus = 1;
+  s->layer.reynolds = 6e6;
+  s->layer.length = 1;
+  if (strstr(c->name, "blunt")) s->tail_cells = 8;
+  if (n_cell) s->scale = sqrt((double)c->n_cell / (double)n_cell);
+  if (n_cell) s->layer.scale_rule = VG_GROWTH_LAW_EVEN;
+  snprintf(s->write, sizeof s->write, "su2,foam,b8.ugrid");
+}
+
+/* STEM.dat and STEM.deck, or neither. */
+static vg_status write_section(const char *stem, const struct vg_demo_case *c,
+                               const struct vg_settings *s,
+                               struct vg_error *err)
+{
+  const int is_blunt = strstr(c->name, "blunt") != NULL;
+  struct vg_outputs o = VG_OUTPUTS_INIT;
+  struct vg_notes notes = { 0 };
+  char *dat = NULL, *deck = NULL;
+  vg_status st;
+
+  VG_TRY(vg_outputs_place(stem, NULL, &o, err));
+  VG_TRY(vg_outputs_claim(&o, &notes, err));
+  VG_TRY(vg_outputs_begin(&o, NULL, err));
+  dat = vg_outputs_temp_path(&o, "dat");
+  deck = vg_outputs_temp_path(&o, "deck");
+  if (!dat || !deck) {
+    st = vg_fail_memory(err, "a path");
+    goto done;
+  }
+  VG_TRY(vg_outputs_add(&o, "dat", err));
+  VG_TRY(vg_outputs_add(&o, "deck", err));
+  VG_TRY(vg_demo_aerofoil_write(dat, is_blunt, err));
+  VG_TRY(vg_deck_write(deck, s, section_comment, VG_DECK_CHANGED, err));
+  st = vg_outputs_commit(&o, err);
+done:
+  st = vg_outputs_failed(&o, st, err);
+  free(dat);
+  free(deck);
+  vg_notes_release(&notes);
+  vg_outputs_release(&o);
+  return st;
+}
+
+static vg_status make_section(const struct arguments *a,
+                              const struct vg_demo_case *c, const char *stem,
+                              struct vg_error *err)
+{
+  struct vg_settings s = VG_SETTINGS_INIT;
+  char *path[2] = { NULL, NULL }, count[32];
+  vg_status st;
+
+  VG_TRY(new_path(stem, "dat", &path[0], err));
+  VG_TRY(new_path(stem, "deck", &path[1], err));
+  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
+  set_section(c, a->n_cell, &s);
+  VG_TRY(write_section(stem, c, &s, err));
+  printf("%s: coordinates of the section\n", path[0]);
+  printf("%s: settings, for about %s cells with the viscous layers\n", path[1],
+         vg_text_count(a->n_cell ? a->n_cell : c->n_cell, count));
+  printf("Next: vanguard mesh -p %s\n", stem);
+done:
+  free(path[0]);
+  free(path[1]);
+  vg_settings_release(&s);
+  return st;
+}
+
+/* The case of this name; NULL: it is no plane section. */
+static const struct vg_demo_case *section_of(const char *name)
+{
+  size_t n;
+  const struct vg_demo_case *c = vg_demo_sections(&n);
+
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(c[i].name, name)) return &c[i];
+  return NULL;
+}
+
 static vg_status make(const struct arguments *a, struct vg_error *err)
 {
+  const struct vg_demo_case *section = section_of(a->name);
   struct vg_demo demo = VG_DEMO_INIT;
   char *stem = NULL, *path[3] = { NULL };
   vg_status st = VG_OK;
@@ -289,6 +392,10 @@ static vg_status make(const struct arguments *a, struct vg_error *err)
                a->name) < 0) {
     stem = NULL;
     st = vg_fail_memory(err, "a path");
+    goto done;
+  }
+  if (section) {
+    st = make_section(a, section, stem, err);
     goto done;
   }
   VG_TRY(new_path(stem, suffixes[0], &path[0], err));
@@ -324,7 +431,8 @@ int vg_cmd_demo(int argc, char **argv)
     .args_doc = "NAME",
     .doc = "Write the example project NAME: NAME.lb8.ugrid (surface), "
            "NAME.mapbc (boundary conditions) and NAME.deck (settings), ready "
-           "for vanguard mesh."
+           "for vanguard mesh; of a case in two dimensions NAME.dat "
+           "(coordinates of the section) and NAME.deck."
   };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;

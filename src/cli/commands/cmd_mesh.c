@@ -150,6 +150,7 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_problem_open(p, a->project, a->deck, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->asked, err));
+  vg_section_complete(&p->read, &p->asked);
   vg_mesh_log_settings(&r->mesh, &p->asked);
   vg_resolve_write(&p->asked, list);
   st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);
@@ -562,7 +563,8 @@ int vg_cmd_mesh(int argc, char **argv)
       "that request them, and tetrahedra elsewhere.\v"
       "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or with "
       "planar patches only) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
-      "Medit; STEP, IGES, BREP, EGADS), with boundary conditions in "
+      "Medit; STEP, IGES, BREP, EGADS) or a plane section (coordinates in "
+      "a .dat, for a mesh in two dimensions), with boundary conditions in "
       "PROJECT.mapbc and settings in PROJECT.deck. "
       "The command writes PROJECT.cogsg, .bc, .mapbc and .b8.ugrid (see "
       "--write), .resolved.deck with all settings, and the report as "

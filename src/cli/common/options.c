@@ -334,6 +334,7 @@ static const char *const topic_title[VG_TOPIC_N] = {
   [VG_TOPIC_SURFACE] = "Surface and flow domain:",
   [VG_TOPIC_CAD] = "CAD files:",
   [VG_TOPIC_REMESH] = "Remeshing of the surface:",
+  [VG_TOPIC_SECTION] = "Plane sections:",
   [VG_TOPIC_FARFIELD] = "Outer boundary:",
   [VG_TOPIC_LAYERS] = "Viscous layers:",
   [VG_TOPIC_LIMITS] = "Limits on the layers:",

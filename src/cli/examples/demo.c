@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "cli/examples/demo_aerofoil.h"
 #include "cli/examples/demo_parts.h"
 #include "core/domain/farfield.h"
 
@@ -467,12 +468,17 @@ done:
 
 static vg_status unknown(const char *name, struct vg_error *err)
 {
+  const struct vg_demo_case *section;
   char list[256] = "";
-  size_t at = 0;
+  size_t at = 0, n;
 
   for (size_t i = 0; i < N_ENTRY; i++)
     at += (size_t)snprintf(list + at, sizeof list - at, "%s%s", i ? ", " : "",
                            cases[i].name);
+  section = vg_demo_sections(&n);
+  for (size_t i = 0; i < n; i++)
+    at += (size_t)snprintf(list + at, sizeof list - at, ", %s",
+                           section[i].name);
   return vg_fail(err, VG_ERR_USAGE, "unknown example '%s'; the examples are %s",
                  name, list);
 }

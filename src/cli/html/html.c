@@ -35,6 +35,7 @@ static void foot(struct page *p)
 
 static vg_status sections(struct page *p, struct vg_error *err)
 {
+  const int is_section = p->h->problem->read.is_section;
   vg_status st;
 
   vg_html_head(p);
@@ -44,12 +45,12 @@ static vg_status sections(struct page *p, struct vg_error *err)
   vg_html_surface(p);
   vg_html_cuts(p);
   vg_html_layers(p);
-  vg_html_quality(p);
-  vg_html_worst(p);
+  if (!is_section) vg_html_quality(p);
+  if (!is_section) vg_html_worst(p);
   vg_html_volumes(p);
   vg_html_settings(p);
   vg_html_patches(p);
-  vg_html_partition(p);
+  if (!is_section) vg_html_partition(p);
   VG_TRY(vg_html_run(p, err));
   foot(p);
 done:

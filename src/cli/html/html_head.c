@@ -329,11 +329,27 @@ static void wall_quads(struct page *p)
   tile_end(p, "layer cells per point of the layers");
 }
 
+static void angle_tiles(struct page *p)
+{
+  const struct vg_mesh_report *r = p->has_layers ? &p->h->run->field_judge
+                                                 : &p->h->run->judge;
+  const int is_section = p->h->problem->read.is_section;
+
+  tile_begin(p);
+  vg_page_real(p, is_section ? p->h->run->plane.angle_min : r->angle_min, 3);
+  vg_page_markup(p, "&deg;");
+  tile_end(p, is_section ? "smallest angle of a triangle outside the layers"
+              : p->has_layers ? "smallest dihedral angle outside the layers"
+                              : "smallest dihedral angle");
+  if (is_section) return;
+  tile_begin(p);
+  vg_page_fixed(p, r->radius_ratio_mean, 3);
+  tile_end(p, "mean radius ratio");
+}
+
 void vg_html_tiles(struct page *p)
 {
   const struct vg_slices *m = &p->h->run->slices;
-  const struct vg_mesh_report *r = p->has_layers ? &p->h->run->field_judge
-                                                 : &p->h->run->judge;
 
   vg_page_markup(p, "<div class=\"tiles\">\n");
   tile(p, vg_run_cells(p->h->run),
@@ -355,13 +371,6 @@ void vg_html_tiles(struct page *p)
     vg_page_real(p, p->h->layers->all.first.mean, 4);
     tile_end(p, "mean first height");
   }
-  tile_begin(p);
-  vg_page_real(p, r->angle_min, 3);
-  vg_page_markup(p, "&deg;");
-  tile_end(p, p->has_layers ? "smallest dihedral angle outside the layers"
-                            : "smallest dihedral angle");
-  tile_begin(p);
-  vg_page_fixed(p, r->radius_ratio_mean, 3);
-  tile_end(p, "mean radius ratio");
+  angle_tiles(p);
   vg_page_markup(p, "</div>\n\n");
 }

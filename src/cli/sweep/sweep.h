@@ -43,6 +43,7 @@ struct vg_sweep_case {
   int way;        /* enum vg_decomposition_method; -1: not given */
   int64_t family; /* level, from 1; 0: no family */
   double member[VG_MEMBER_N];
+  int is_plane; /* 1: a mesh in two dimensions */
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;

@@ -17,13 +17,14 @@ double vg_sweep_scale(int64_t level)
   return 2 / ((double)level + 1);
 }
 
-/* Factor of quantity k from level a to level b: that of cells is the cube of
- * the refinement ratio of edges. */
-static double rule(int k, int64_t a, int64_t b)
+/* Factor of quantity k from one member to another: that of cells is the cube of
+ * the refinement ratio of edges, or its square in two dimensions. */
+static double rule(int k, const struct vg_sweep_case *from,
+                   const struct vg_sweep_case *to)
 {
-  double finer = vg_sweep_scale(a) / vg_sweep_scale(b);
+  double finer = vg_sweep_scale(from->family) / vg_sweep_scale(to->family);
 
-  if (k == VG_MEMBER_CELLS) return finer * finer * finer;
+  if (k == VG_MEMBER_CELLS) return finer * finer * (to->is_plane ? 1 : finer);
   return k == VG_MEMBER_LEVELS ? finer : 1 / finer;
 }
 
@@ -41,6 +42,7 @@ void vg_sweep_member(const json_t *report, struct vg_sweep_case *c)
   const char *field = json_object_get(report, "field") ? "field" : "mesh";
   const json_t *layers = json_object_get(report, "layers");
 
+  c->is_plane = json_object_get(report, "plane") != NULL;
   c->member[VG_MEMBER_CELLS] = number(report, "mesh", "cells", NULL);
   c->member[VG_MEMBER_SURFACE] = number(report, "surface", "quality",
                                         "edge_mean");
@@ -84,8 +86,7 @@ static void text_of(FILE *to, const struct vg_sweep_case *c,
     fprintf(to, isfinite(r) ? " %12.4f" : "            -", r);
   }
   fprintf(to, "\n        rule");
-  for (int k = 0; k < VG_MEMBER_N; k++)
-    fprintf(to, " %12.4f", rule(k, p->family, c->family));
+  for (int k = 0; k < VG_MEMBER_N; k++) fprintf(to, " %12.4f", rule(k, p, c));
   fprintf(to, "\n");
 }
 
@@ -130,7 +131,7 @@ vg_status vg_sweep_family_write(const struct vg_sweep *s, struct vg_error *err)
     for (int k = 0; k < VG_MEMBER_N; k++) {
       put_real(&out, c->member[k]);
       put_real(&out, p ? c->member[k] / p->member[k] : NAN);
-      put_real(&out, p ? rule(k, p->family, c->family) : NAN);
+      put_real(&out, p ? rule(k, p, c) : NAN);
     }
     vg_output_text(&out, "\n");
   }

@@ -17,6 +17,7 @@
 
 #include "base/library.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/plane_mesh.h"
 #include "io/stream/stream.h"
 
 /** Maximum length of the name of a patch, for vg_patch_words. */
@@ -67,5 +68,10 @@ vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
  * Threads: one at a time, a restriction of the HDF5 library. */
 vg_status vg_cgns_write(const char *path, const struct vg_mesh *m,
                         struct vg_error *err);
+
+/** Write a mesh in two dimensions: cell and physical dimension 2, conditions on
+ * edges. Otherwise as vg_cgns_write. */
+vg_status vg_cgns_plane_write(const char *path, const struct vg_plane_mesh *m,
+                              struct vg_error *err);
 
 #endif

@@ -70,6 +70,34 @@ static const char *patch_type(const struct vg_patch *p, int is_planar,
   return "patch";
 }
 
+static int is_symmetry(const struct vg_patch *p)
+{
+  return p->bc == 1 || (p->bc == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE &&
+                        vg_bc_to_usm3d(p->bc_fun3d) == 1);
+}
+
+/* Whether a mesh is one cell thick, for a flow in two dimensions: each cell is
+ * a prism or a hexahedron with a face in each of the only two symmetry planes.
+ */
+static int is_thin(const struct vg_mesh *m)
+{
+  size_t patch[2], n_patch = 0, n_tri[2] = { 0, 0 }, n_quad[2] = { 0, 0 };
+
+  if (m->n_tet || m->n_pyr) return 0;
+  for (size_t p = 0; p < m->n_patch; p++) {
+    if (!is_symmetry(&m->patch[p])) continue;
+    if (n_patch == 2) return 0;
+    patch[n_patch++] = p;
+  }
+  if (n_patch < 2) return 0;
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; k < 2; k++) n_tri[k] += m->tri_patch[i] == patch[k];
+  for (size_t i = 0; i < m->n_quad; i++)
+    for (int k = 0; k < 2; k++) n_quad[k] += m->quad_patch[i] == patch[k];
+  return n_tri[0] == m->n_pri && n_tri[1] == m->n_pri &&
+         n_quad[0] == m->n_hex && n_quad[1] == m->n_hex;
+}
+
 static const uint32_t *boundary_nodes(const struct vg_mesh *m, size_t face)
 {
   return face < m->n_tri ? m->tri[face] : m->quad[face - m->n_tri];
@@ -321,6 +349,7 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
   char(*name)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
+  const int thin = is_thin(w->m);
 
   if (!name) return vg_fail_memory(err, "the names of the patches");
   vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);
@@ -331,6 +360,7 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
       *type = patch_type(w->m->patch + i, is_planar(w->m, w->order + first, n),
                          &physical);
 
+    if (thin && is_symmetry(w->m->patch + i)) type = physical = "empty";
     vg_output_format(o, "    %s\n    {\n        type            %s;\n", name[i],
                      type);
     if (*physical)

@@ -51,6 +51,9 @@ struct vg_layer_options {
   double jump;          /* Volume ratio across the tops to aim at in columns of
                            limited height, >= 1. */
   int smooth;           /* Smoothing sweeps over the directions. */
+  int is_slab;          /* 1: the surface is a slab between two planes z =
+                            constant, and only edges in these planes determine
+                            the local edge length. */
   int threads;          /* Number of threads; 0: one per core. */
   struct vg_team *team; /* Ranks that share the work (base/team.h); NULL: this
                            rank alone. */
@@ -61,7 +64,7 @@ struct vg_layer_options {
 #define VG_LAYER_END_MIXED 0.6
 #define VG_LAYER_OPTIONS_INIT                                                  \
   {                                                                            \
-    NULL, NULL, NULL, 0, 0.95, 0.4, 1, 1.5, 100, 1, NULL, { NULL, NULL },      \
+    NULL, NULL, NULL, 0, 0.95, 0.4, 1, 1.5, 100, 0, 1, NULL, { NULL, NULL },   \
     {                                                                          \
       NULL, NULL                                                               \
     }                                                                          \

@@ -25,6 +25,42 @@
 /* Share of the height of a triangle that a corner may move sideways. */
 #define LEAN 0.3
 
+/* Length of the edge of triangle t in the plane of point p of a slab; 0: the
+ * triangle has none, or p is not on it. */
+static double slab_edge(const struct vg_mesh *m, uint32_t t, uint32_t p)
+{
+  for (int k = 0; k < 3; k++) {
+    const uint32_t a = m->tri[t][k], b = m->tri[t][(k + 1) % 3];
+
+    if ((a == p || b == p) && m->point[a][2] == m->point[b][2])
+      return vg_distance(m->point[a], m->point[b]);
+  }
+  return 0;
+}
+
+/* Mean length of the edges in the plane of each column of a slab. */
+static void slab_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double sum = 0;
+    int n = 0;
+
+    for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+      const uint32_t tri = w->c->face_tri[w->t.corner[j] / 3];
+      const double l = tri == VG_NO_INDEX
+                       ? 0
+                       : slab_edge(w->m, tri, w->c->column[i].root);
+
+      sum += l;
+      n += l > 0;
+    }
+    w->edge[i] = n ? sum / n : 0;
+  }
+}
+
 /* Edge length of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
 {
@@ -81,7 +117,8 @@ static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
   double *other = vg_alloc(n, sizeof *other);
 
   if (!other) return vg_fail_memory(err, "the layers");
-  vg_parallel_for(w->o->threads, n, GRAIN, edge_body, w);
+  vg_parallel_for(w->o->threads, n, GRAIN,
+                  w->o->is_slab ? slab_body : edge_body, w);
   for (int s = 0; s < EDGE_SWEEPS; s++) {
     struct relax r = { w, w->edge, other };
 

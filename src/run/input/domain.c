@@ -152,8 +152,8 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
   if (!is_plane(&b->surface)) return VG_OK;
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: all triangles lie in one plane: such a surface bounds no "
-                 "volume. Meshes are three-dimensional: give a body, or "
-                 "extrude the section in the CAD system",
+                 "volume. Give a body, or for a mesh in two dimensions "
+                 "the coordinates of the section in a .dat",
                  b->read->files.stem);
 }
 
@@ -365,8 +365,7 @@ static vg_status check_reach(const struct vg_boundary *b, struct vg_error *err)
                  VG_COORDINATE_MAX);
 }
 
-/* Farfield options, with open settings filled in from the decided flow. */
-static struct vg_farfield decided_farfield(const struct vg_boundary *b)
+struct vg_farfield vg_boundary_farfield(const struct vg_boundary *b)
 {
   struct vg_settings view = b->read->settings; /* Tables are borrowed. */
 
@@ -477,7 +476,7 @@ static vg_status make_sizing(const struct vg_boundary *b,
 vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
 {
-  struct vg_farfield far = decided_farfield(b);
+  struct vg_farfield far = vg_boundary_farfield(b);
   struct vg_sizing *sizing = NULL;
   const size_t n_own = b->surface.n_patch;
   vg_status st;

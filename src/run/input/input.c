@@ -15,6 +15,7 @@
 #include "base/memory.h"
 #include "io/mesh/aflr.h"
 #include "io/mesh/format.h"
+#include "io/section/section.h"
 #include "io/vgrid/mapbc.h"
 #include "io/vgrid/vgrid.h"
 #include "layers/columns/growth_law.h"
@@ -164,7 +165,8 @@ static vg_status find_surface(const char *stem, char **out,
       found = path;
     }
   }
-  if (st >= 0 && !found) found = strdup("");
+  /* Other programs write .dat files next to a surface. */
+  if (st >= 0 && !found) found = adjacent(stem, VG_SECTION_SUFFIX + 1);
   if (st < 0) {
     free(found);
     return st;
@@ -176,7 +178,9 @@ static vg_status find_surface(const char *stem, char **out,
 /* Stem of a complete surface name; NULL if it is not one. */
 static char *stem_of(const char *name)
 {
-  size_t suffix = vg_format_suffix_length(name), n = strlen(name);
+  size_t suffix = vg_section_is(name) ? vg_section_suffix_length(name)
+                                      : vg_format_suffix_length(name);
+  size_t n = strlen(name);
 
   if (!suffix || suffix >= n || !exists(name)) return NULL;
   return strndup(name, n - suffix);
@@ -217,12 +221,13 @@ static vg_status refuse_absent(const char *name, struct vg_error *err)
   else if (vg_format_suffix_length(name) || vg_text_ends(name, ".d3m"))
     st = vg_fail(err, VG_ERR_INPUT, "%s: this file does not exist", name);
   else
-    st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: there is no such file, and no project found: there is "
-                 "neither %s.d3m nor %s.front nor a surface such as "
-                 "%s.lb8.ugrid or %s.stl; give the stem of a project or the "
-                 "complete name of a surface file",
-                 name, name, name, name, name);
+    st = vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: there is no such file, and no project found: there is "
+      "neither %s.d3m nor %s.front nor a surface such as "
+      "%s.lb8.ugrid or %s.stl, nor a plane section %s.dat; give the stem of "
+      "a project or the complete name of a surface file",
+      name, name, name, name, name, name);
   free(folder);
   return st;
 }
@@ -286,6 +291,7 @@ vg_status vg_problem_open_deck(struct vg_problem *p, struct vg_error *err)
   const char *base = strrchr(f->stem, '/');
 
   vg_settings_default(s);
+  p->read.is_section = vg_section_is(f->surface);
   snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : f->stem);
   vg_text_trim_end(s->title);
   if (!*f->deck) return VG_OK;
@@ -583,6 +589,7 @@ static vg_status read_surface(struct vg_read *r, struct vg_display *show,
   const struct vg_project *project = *f->d3m ? &r->project : NULL;
   vg_status st;
 
+  if (r->is_section) return vg_read_section(r, err);
   if (!*f->front && *f->surface) return read_surface_file(r, show, err);
   r->side = VG_SIDE_DEFINED;
   st = *f->front ? vg_front_read(f->front, project, &r->surface, err)
@@ -771,6 +778,7 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
   vg_status st;
 
   r->notes = &p->notes;
+  vg_section_complete(r, &p->asked);
   vg_helper_set_folder(p->asked.helpers);
   st = read_asides(&p->asked, r, err);
   if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, show, st, err);

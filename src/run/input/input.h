@@ -115,6 +115,8 @@ struct vg_read {
                              file format. */
   int unit;               /* Unit of the mesh, enum vg_cad_unit; FILE: not
                              known. */
+  int is_section;         /* 1: the surface is the strip of a plane section
+                             (run/section/section_surface.h). */
   int has_cells;          /* 1: the surface is the boundary of a volume mesh. */
   struct vg_notes *notes; /* Notes of the problem; borrowed. */
 };
@@ -332,6 +334,20 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
  * conditions are final. */
 vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
                                         struct vg_error *err);
+
+/** Fills in settings of a plane section that were not given and differ from
+ * those of a surface: cells and fan_angle. Does nothing for a surface. */
+void vg_section_complete(const struct vg_read *read, struct vg_settings *s);
+
+/** VG_ERR_UNSUPPORTED for a plane section, which only vanguard mesh and check
+ * take. Called after vg_problem_open. */
+vg_status vg_problem_refuse_section(const struct vg_problem *p,
+                                    struct vg_error *err);
+
+/** Width of the cells of a mesh of a section: section_width or the largest
+ * chord. slab: its surface (run/section/section_surface.h). */
+double vg_section_width(const struct vg_settings *s,
+                        const struct vg_mesh *slab);
 
 /** Writes all faces with a defect to a .vtu, with the kind as a cell field. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

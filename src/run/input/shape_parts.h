@@ -18,6 +18,23 @@ vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
 /** 1 if patch i of the surface is a cap that closes a hole. */
 int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 
+/* run/input/section_boundary.c ------------------------------------------- */
+
+/** Reads the strip of a plane section, with the conditions of its patches. */
+vg_status vg_read_section(struct vg_read *r, struct vg_error *err);
+
+/** Divides the walls of a section into the requested edges. */
+vg_status vg_boundary_divide_section(struct vg_boundary *b,
+                                     struct vg_error *err);
+
+/** Adds the farfield and the planes to the walls. */
+vg_status vg_boundary_close_section(struct vg_boundary *b,
+                                    struct vg_display *show,
+                                    struct vg_error *err);
+
+/** Farfield options, with open settings filled in from the decided flow. */
+struct vg_farfield vg_boundary_farfield(const struct vg_boundary *b);
+
 /* run/input/inner_surface.c
  * ------------------------------------------------------ */
 

@@ -562,6 +562,11 @@ vg_status vg_boundary_shape(struct vg_read *read,
   vg_mesh_keep_boundary(&b->surface);
   VG_TRY(check_range(b, err));
   b->require_bc = has_conditions(&b->surface);
+  if (read->is_section) {
+    VG_TRY(vg_boundary_divide_section(b, err));
+    st = take_rows(b, 0, NULL, err);
+    goto done;
+  }
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
@@ -607,6 +612,11 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
   int is_open;
   vg_status st;
 
+  if (b->read->is_section) {
+    VG_TRY(vg_boundary_close_section(b, show, err));
+    VG_TRY(check(b, 0, show, err));
+    return defects(b, show, err);
+  }
   VG_TRY(check_again(b, show, err));
   is_open = vg_is_only_open(&b->check);
   if (is_open && b->flow.axis < 0) st = vg_boundary_refuse_open(b, show, err);

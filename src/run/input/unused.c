@@ -24,6 +24,7 @@ static const char *const reason[VG_USE_N] = {
   "no farfield was made",
   "the domain was not cut by planes (decompose)",
   "the domain was cut by planes (decompose)",
+  "the input is no plane section",
   "there are no cells to judge"
 };
 
@@ -36,7 +37,9 @@ static unsigned in_use(const struct vg_problem *p, int layers_on)
 
   return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M |
          (unsigned)cad << VG_USE_CAD |
-         (unsigned)p->boundary.remeshing.is_done << VG_USE_REMESH |
+         (unsigned)(p->boundary.remeshing.is_done || p->read.is_section)
+           << VG_USE_REMESH |
+         (unsigned)p->read.is_section << VG_USE_SECTION |
          (unsigned)layers_on << VG_USE_LAYERS |
          (unsigned)p->boundary.domain.added_farfield << VG_USE_FARFIELD |
          (unsigned)planes << VG_USE_PLANES | (unsigned)parted << VG_USE_PARTS;

@@ -364,7 +364,7 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   vg_status st;
 
   /* Triangles in a stretched metric may have small angles. */
-  if (vg_mesh_has_inner(&b->surface)) return VG_OK;
+  if (vg_mesh_has_inner(&b->surface) || b->read->is_section) return VG_OK;
   b->is_swapped = answer == VG_ANSWER_AUTO ? !vg_boundary_is_stretched(b) &&
                                                has_slivers(&b->surface, reason)
                                            : answer == VG_ANSWER_YES;

@@ -252,10 +252,10 @@ static void find_heights(struct body *b)
 }
 
 vg_status vg_cut_plan(const struct vg_mesh *surface,
-                      const struct vg_columns *columns,
+                      const struct vg_columns *columns, int is_slab,
                       struct vg_cut_plan *plan, struct vg_error *err)
 {
-  static const int axes[3] = { 1, 0, 2 };
+  const int axes[3] = { is_slab ? 2 : 1, 0, 2 };
   struct body b = { surface,
                     columns,
                     vg_alloc(surface->n_patch, 1),
@@ -275,7 +275,7 @@ vg_status vg_cut_plan(const struct vg_mesh *surface,
   box_of(&b);
   if (columns) find_heights(&b);
   vg_mesh_bounds(surface, lo, hi);
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < (is_slab ? 1 : 3); k++) {
     struct section s;
     double at = choose_plane(&b, axes[k], &s);
     int met = s.hi[0] >= s.lo[0];

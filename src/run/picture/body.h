@@ -32,9 +32,11 @@ struct vg_cut_plan {
 
 /** Sections of the body normal to y, x and z slightly away from its middle. The
  * first section is also shown for the whole domain and close to both of its
- * ends. If layers lack levels, the worst place is added. VG_ERR_MEMORY. */
+ * ends. If layers lack levels, the worst place is added. VG_ERR_MEMORY.
+ * @param is_slab  1: the surface is that of a mesh one cell thick along z, and
+ *                 only sections normal to z are shown */
 vg_status vg_cut_plan(const struct vg_mesh *surface,
-                      const struct vg_columns *columns,
+                      const struct vg_columns *columns, int is_slab,
                       struct vg_cut_plan *plan, struct vg_error *err);
 
 #endif

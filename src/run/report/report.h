@@ -10,6 +10,7 @@
 #include "core/domain/planar.h"
 #include "core/fill/fill.h"
 #include "core/flow/flow.h"
+#include "core/judge/plane_quality.h"
 #include "core/judge/quality.h"
 #include "core/judge/sheet_sides.h"
 #include "core/mesh/mesh.h"
@@ -94,6 +95,10 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 /** Validity and volume ratios of a mesh with layers: angles say nothing about
  * the quality of its flat layer cells. */
 void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
+/** report_plane.c: cells and angles of a mesh in two dimensions. */
+void vg_report_plane_text(FILE *to, const struct vg_plane_report *r);
+json_t *vg_report_plane_json(const struct vg_plane_report *r);
+
 /** @param patches  mesh with the patches to which flat cells refer */
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
                             const struct vg_mesh *patches);

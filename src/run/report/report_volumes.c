@@ -42,7 +42,8 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q)
 
   fprintf(to, "  %-32s %10s %10s   %s\n", "quality in the terms of solvers",
           "worst", "mean", "faces or cells");
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++) put_row(to, &row[i]);
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    if (!isnan(row[i].worst)) put_row(to, &row[i]);
   if (q->n_skewness)
     fputs(
       "    skewness above 4 is mostly due to sharp edges with one column per "

@@ -77,6 +77,7 @@ enum vg_topic vg_param_topic(const struct vg_param *p, int in_farfield)
   switch (vg_param_use(p, 0)) {
   case VG_USE_CAD: return VG_TOPIC_CAD;
   case VG_USE_REMESH: return VG_TOPIC_REMESH;
+  case VG_USE_SECTION: return VG_TOPIC_SECTION;
   case VG_USE_LAYERS: return VG_TOPIC_LAYERS;
   case VG_USE_PLANES:
   case VG_USE_PARTS: return VG_TOPIC_PARALLEL;

@@ -179,6 +179,27 @@ VG_ROW(REAL, plain, feature_angle, "feature_angle", remesh.feature_angle,
 VG_ROW(REAL, plain, per_turn, "edges_per_turn", remesh.per_turn,
   .use = VG_USE_REMESH, .lo = 3, .hi = 10000, .unit = "edges",
   .help = "Edges per full circle on curved parts of the remeshed surface")
+VG_ROW(REAL, plain, nose_spacing, "le_spacing", 0,
+  .use = VG_USE_SECTION, .hi = 100, .unit = "% of the chord",
+  .help = "Edge length at the leading edge of a plane section, in per cent of "
+  "the chord of its element; 0: by the curvature")
+VG_ROW(REAL, plain, tail_spacing, "te_spacing", 0.2,
+  .use = VG_USE_SECTION, .hi = 100, .unit = "% of the chord",
+  .help = "Edge length at the trailing edge of a plane section and at its "
+  "other convex corners, in per cent of the chord of its element; 0: by the "
+  "curvature")
+VG_ROW(COUNT, plain, tail_cells, "te_cells", 0,
+  .use = VG_USE_SECTION, .hi = 10000, .unit = "edges",
+  .help = "Number of edges across a blunt trailing edge of a plane section; 0: "
+  "by te_spacing")
+VG_ROW(REAL, plain, section_width, "section_width", 0,
+  .use = VG_USE_SECTION, LENGTH, .help = "Width of the cells of a mesh in two "
+  "dimensions where it is written one cell thick; 0: the largest chord")
+VG_ROW(WORD, plain, section_axis, "section_axis", 0,
+  .use = VG_USE_SECTION, .words = axis_words, .unit = "",
+  .help = "Axis normal to a mesh in two dimensions where it is written one "
+  "cell thick. z: the coordinates of the section are x and y; y: they are x "
+  "and z, as FUN3D requires")
 VG_ROW(REAL, plain, gap_edges, "gap_edges", 0,
   .topic = VG_TOPIC_REMESH,
   .hi = 1000, .unit = "edges", .help = "Minimum number of edges across the "
@@ -361,11 +382,11 @@ VG_TEXT_ROW(layer, slip, VG_LIST_MAX, "slip", "",
   .unit = "", .check = vg_patch_list_check,
   .pattern = vg_patch_list_pattern, .help = "Patches without layers "
   "regardless of their boundary condition, as in 4,7-9,flap?")
-VG_ROW(REAL, layer, fan_angle, "fan_angle", layers.fan_angle,
-  .lo = 0, .hi = 180, .unit = "degrees", .help = "Convex edges that turn by "
-  "more than this angle get fans (several columns per point, multiple "
-  "normals); 0: only points from which no single direction sees all faces; "
-  "180: no fans")
+VG_ROW(REAL, layer, fan_angle, "fan_angle", NAN,
+  .lo = 0, .hi = 180, .optional = 1, .unit = "degrees", .help = "Convex edges "
+  "that turn by more than this angle get fans (several columns per point, "
+  "multiple normals); 0: only points from which no single direction sees all "
+  "faces; 180: no fans; -: 0, or 60 for a plane section")
 VG_ROW(REAL, layer, gap, "layer_gap", layers.gap,
   .hi = 0.49, .above_lo = 1, .unit = "", .help = "Largest fraction of the "
   "distance to the opposite surface that layers may take up")

@@ -30,6 +30,8 @@ static const char *const flow_words[] = { "auto", "external", "internal",
                                           NULL };
 static const char *const half_words[] = { "auto", "no", "yes", "x",
                                           "y",    "z",  NULL };
+/* The axes 2 and 1. */
+static const char *const axis_words[] = { "z", "y", NULL };
 static const char *const region_words[] = { "one", "all", NULL };
 static const char *const answer_words[] = { "auto", "no", "yes", NULL };
 /* In the order of enum vg_cad_unit, of enum vg_cad_patches. */

@@ -572,6 +572,8 @@ static vg_status write_item(struct writing *w, const char *item,
 {
   if (!strcmp(item, "mapbc") || !strcmp(item, "fun3d.mapbc"))
     return write_conditions(w, item, err);
+  if (vg_outputs_has_plane(w->o, item))
+    return vg_outputs_plane(w->o, w->comm, item, err);
   /* A sheet has a zone of its own among the faces between cells. */
   if (!strcmp(item, VG_FLUENT_SUFFIX) && w->mesh->boundary->n_sheet)
     return write_whole(w, item, err);

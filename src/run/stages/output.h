@@ -13,6 +13,7 @@
 #include "run/settings/lists.h"
 
 struct vg_slices_ugrid;
+struct vg_plane_mesh;
 
 struct vg_outputs {
   char *dir, *name; /* Target folder ("." if none is given), base name. */
@@ -25,6 +26,7 @@ struct vg_outputs {
   size_t n_open;     /* Number of entries of `open`. */
   uint64_t put_time; /* Nanoseconds in vg_outputs_put, all threads. */
   struct vg_slices_ugrid *open[VG_WRITE_ITEMS];
+  const struct vg_plane_mesh *plane; /* Mesh of a plane section; borrowed. */
   int drops_sheets; /* 1: STEM.sheets of an earlier mesh is removed. */
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
@@ -58,6 +60,13 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
  * to vg_outputs_temp_path. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err);
+
+/** Is a mesh in two dimensions written in this format of the list? */
+int vg_outputs_has_plane(const struct vg_outputs *o, const char *item);
+
+/** Writes o->plane on rank 0. Collective. run/stages/output_plane.c. */
+vg_status vg_outputs_plane(struct vg_outputs *o, struct vg_comm *comm,
+                           const char *item, struct vg_error *err);
 
 /** Is the mesh written in a format to which STEM.sheets belongs? */
 int vg_outputs_need_sheets(const struct vg_outputs *o);

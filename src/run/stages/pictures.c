@@ -15,7 +15,11 @@ vg_status vg_run_pictures_plan(struct vg_run_pictures *r, struct vg_comm *comm,
 
   assert(!r->cuts);
   if (!r->is_on) return VG_OK;
-  st = vg_cut_plan(surface, columns, &r->plan, err);
+  st = vg_cut_plan(surface, columns, r->axis > 0, &r->plan, err);
+  for (size_t i = 0; i < r->plan.n && r->axis; i++) {
+    r->plan.cut[i].axis = r->axis;
+    r->plan.cut[i].at = r->at;
+  }
   if (st >= 0) st = vg_cuts_new(r->plan.n, r->plan.cut, &r->cuts, err);
   r->time += vg_display_now() - t;
   return vg_comm_agree(comm, st, err);

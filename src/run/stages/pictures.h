@@ -13,6 +13,9 @@
 struct vg_run_pictures {
   int is_on; /* Pictures are requested; otherwise all other members are
                 empty. */
+  int axis;  /* 1, 2: normal of a mesh one cell thick, which is drawn at `at`
+                only; 0: a mesh in space. */
+  double at;
   struct vg_cut_plan plan;
   struct vg_cuts *cuts; /* On rank 0 the cuts of all ranks, once gathered. */
   struct vg_around worst[VG_RUN_WORST]; /* On rank 0. */

@@ -7,6 +7,7 @@
 #include "base/version.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
+#include "run/section/section_surface.h"
 
 static json_t *files_json(const struct vg_run_report *r)
 {
@@ -56,22 +57,26 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
+  if (p->read.is_section)
+    json_object_set_new(o, "plane", vg_report_plane_json(&r->run->plane));
   if (r->run->sheets)
     json_object_set_new(o, "sheets",
                         vg_report_sheets_json(r->run->slices.boundary,
                                               r->run->sheets));
   json_object_set_new(o, "limits_missed",
                       vg_report_mesh_limits_json(&p->asked, &r->run->judge));
-  json_object_set_new(o, "fill",
-                      vg_report_fill_json(&r->run->partition.fill,
-                                          r->run->n_field_cell));
-  json_object_set_new(o, "partition", vg_report_partition_json(r->run));
+  if (!p->read.is_section) {
+    json_object_set_new(o, "fill",
+                        vg_report_fill_json(&r->run->partition.fill,
+                                            r->run->n_field_cell));
+    json_object_set_new(o, "partition", vg_report_partition_json(r->run));
+  }
   json_object_set_new(o, "memory_bytes", vg_report_memory_json(r->run));
-  if (r->layers->is_on) {
+  if (r->layers->is_on && !p->read.is_section)
     json_object_set_new(o, "field",
                         vg_report_mesh_json(&r->run->field_judge, m));
+  if (r->layers->is_on)
     json_object_set_new(o, "layers", vg_report_layers_json(r->layers, m));
-  }
   if (r->run->parts)
     json_object_set_new(o, "solver_parts",
                         vg_report_solver_json(&r->run->solver));
@@ -120,6 +125,26 @@ json_t *vg_run_report_json(const struct vg_run_report *r, int ok,
   return o;
 }
 
+static void print_count(FILE *to, const char *name, size_t n)
+{
+  char count[32];
+
+  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
+}
+
+/* The slab of a section is of no interest to the user. */
+static void print_section(FILE *to, const struct vg_problem *p)
+{
+  const struct vg_mesh *m = vg_problem_surface(p);
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  fprintf(to, "\nSection\n");
+  print_count(to, "edges, with the farfield", vg_section_points(m));
+  fprintf(to, "  bounding box             %.6g %.6g to %.6g %.6g\n", lo[0],
+          lo[1], hi[0], hi[1]);
+}
+
 void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
 {
   const struct vg_problem *p = r->problem;
@@ -130,6 +155,10 @@ void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
   vg_report_flow_text(to, &b->flow, b->domain.added_farfield);
   for (size_t i = 0; i < p->notes.n; i++)
     fprintf(to, "  note: %s\n", p->notes.text[i]);
+  if (p->read.is_section) {
+    print_section(to, p);
+    return;
+  }
   fprintf(to, "\nSurface\n");
   vg_report_size_text(to, m);
   if (b->n_welded || b->n_dropped)
@@ -140,13 +169,6 @@ void vg_run_report_surface_text(FILE *to, const struct vg_run_report *r)
   if (b->read)
     vg_report_surface_text(to, m, &b->check, r->problem->read.unit,
                            vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
-}
-
-static void print_count(FILE *to, const char *name, size_t n)
-{
-  char count[32];
-
-  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
 }
 
 static void print_times(FILE *to, const struct vg_run_report *r)
@@ -174,16 +196,11 @@ static void print_files(FILE *to, const struct vg_run_report *r)
   }
 }
 
-void vg_run_report_text(FILE *to, const struct vg_run_report *r)
+/* How the space outside the layers was filled. */
+static void print_fill(FILE *to, const struct vg_run_report *r)
 {
   const struct vg_run *m = r->run;
 
-  vg_run_report_surface_text(to, r);
-  if (!r->has_mesh) return;
-  if (r->layers->is_on) {
-    fprintf(to, "\nBoundary layers\n");
-    vg_report_layers_text(to, r->layers, &r->problem->boundary.surface);
-  }
   fprintf(to, "\nDomain decomposition\n");
   vg_report_partition_text(to, m);
   fprintf(to, "\nVolume fill\n");
@@ -194,16 +211,37 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
     print_count(to, "tetrahedra", m->n_field_cell);
     vg_report_mesh_text(to, &m->field_judge, 0);
   }
-  fprintf(to, "\nVolume mesh\n");
+}
+
+void vg_run_report_text(FILE *to, const struct vg_run_report *r)
+{
+  const struct vg_run *m = r->run;
+
+  vg_run_report_surface_text(to, r);
+  if (!r->has_mesh) return;
+  if (r->layers->is_on) {
+    fprintf(to, "\nBoundary layers\n");
+    vg_report_layers_text(to, r->layers, &r->problem->boundary.surface);
+  }
+  if (r->problem->read.is_section) {
+    fprintf(to, "\nMesh in the plane\n");
+    vg_report_plane_text(to, &m->plane);
+  } else {
+    print_fill(to, r);
+  }
+  fprintf(to, r->problem->read.is_section ? "\nMesh one cell thick\n"
+                                          : "\nVolume mesh\n");
   print_count(to, "points", m->slices.n_point);
-  print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  if (!r->problem->read.is_section)
+    print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
   if (m->slices.n_cell[VG_SLICE_PYR])
     print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
   if (m->slices.n_cell[VG_SLICE_PRI])
     print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
   if (m->slices.n_cell[VG_SLICE_HEX])
     print_count(to, "hexahedra", m->slices.n_cell[VG_SLICE_HEX]);
-  if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
+  if (r->layers->is_on || r->problem->read.is_section)
+    vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
   if (m->parts) {

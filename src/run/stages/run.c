@@ -17,6 +17,7 @@
 #include "run/input/walls.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
+#include "run/stages/run_parts.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {
@@ -30,12 +31,12 @@ uint64_t vg_run_cells(const struct vg_run *r)
 
 /* These steps are done by the first rank of each node, on the cores of all
  * ranks of its node, which sleep meanwhile. */
-static int leads_node(const struct vg_run *r)
+int vg_run_leads_node(const struct vg_run *r)
 {
   return vg_comm_node_rank(r->comm) == 0;
 }
 
-static int node_threads(struct vg_run *r, const struct vg_settings *s)
+int vg_run_node_threads(struct vg_run *r, const struct vg_settings *s)
 {
   if (!s->threads) return vg_comm_node_cores(r->comm, 1);
   vg_comm_bind_node(r->comm, 1);
@@ -47,7 +48,7 @@ static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
                                struct vg_display *show, struct vg_error *err)
 {
   const struct vg_shape_options o = {
-    .threads = node_threads(r, &p->asked),
+    .threads = vg_run_node_threads(r, &p->asked),
     .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm)
   };
   vg_status st = vg_boundary_shape(&p->read, &o, show, &p->boundary, err);
@@ -63,7 +64,7 @@ static vg_status settle_surface(struct vg_run *r, struct vg_problem *p,
   struct vg_boundary *b = &p->boundary;
   vg_status st;
 
-  b->threads = node_threads(r, &p->asked);
+  b->threads = vg_run_node_threads(r, &p->asked);
   VG_TRY(vg_boundary_close(b, show, err));
   VG_TRY(vg_layer_stage_plan(layers, b, err));
   VG_TRY(vg_boundary_finish_conditions(b, err));
@@ -91,10 +92,10 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
 
   VG_TRY(vg_comm_watch(r->comm, p->asked.rank_silence, err));
   VG_TRY(vg_run_helpers(r->comm, err));
-  if (leads_node(r)) st = shape_surface(r, p, show, err);
-  VG_TRY(vg_problem_share(p, r->comm, leads_node(r), st, err));
-  st = leads_node(r) ? settle_surface(r, p, layers, show, err)
-                     : await_surface(p, err);
+  if (vg_run_leads_node(r)) st = shape_surface(r, p, show, err);
+  VG_TRY(vg_problem_share(p, r->comm, vg_run_leads_node(r), st, err));
+  st = vg_run_leads_node(r) ? settle_surface(r, p, layers, show, err)
+                            : await_surface(p, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   is_on = (uint64_t)layers->is_on;
   st = vg_surface_share(r->comm, &b->surface, &is_on, &b->common, err);
@@ -108,7 +109,7 @@ done:
 
 /* Shares the data made by the first rank of the node, with status st, with its
  * other ranks. Collective. layers is NULL without layers. */
-static vg_status share_with_node(struct vg_run *r, vg_status st,
+vg_status vg_run_share_with_node(struct vg_run *r, vg_status st,
                                  struct vg_layers *layers,
                                  struct vg_display *show,
                                  struct vg_sizing **sizing,
@@ -129,7 +130,7 @@ done:
 }
 
 /* Builds the sizing field over a boundary. */
-static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
+vg_status vg_run_measure_sizes(struct vg_run *r, const struct vg_problem *p,
                                const struct vg_mesh *boundary,
                                double coarseness, int threads,
                                struct vg_team *team, struct vg_display *show,
@@ -370,11 +371,12 @@ static vg_status stop_here(const struct vg_run *r, struct vg_display *show,
 
 /* --- mesh check ---------------------------------------------------------- */
 
-static vg_status accept(const struct vg_run *r, struct vg_error *err)
+static vg_status accept(const struct vg_run *r, int has_field,
+                        struct vg_error *err)
 {
   char faults[300];
 
-  if (r->judge.is_valid && (!r->layers || r->field_judge.is_valid))
+  if (r->judge.is_valid && (!has_field || r->field_judge.is_valid))
     return VG_OK;
   vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
                    sizeof faults);
@@ -395,9 +397,12 @@ static vg_status prepare_flat(const struct vg_run *r,
     .face = (const uint32_t(*)[3])surface->tri,
     .patch = surface->tri_patch
   };
-  vg_status st = r->layers ? vg_layer_slices_flat(r->layers, out, err)
-                           : vg_flat_new(&b, out, err);
+  vg_status st = VG_OK;
 
+  /* A mesh of a section has no tetrahedra. */
+  if (!r->section.solid.n_point)
+    st = r->layers ? vg_layer_slices_flat(r->layers, out, err)
+                   : vg_flat_new(&b, out, err);
   return vg_comm_agree(r->comm, st, err);
 }
 
@@ -451,13 +456,16 @@ done:
 
 /* Edges are compared with the sizing field only outside the layers, where sizes
  * are isotropic. The file of an invalid mesh is removed. */
-static vg_status judge(struct vg_run *r, const struct vg_problem *p,
+vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_layers *layers,
                        const struct vg_sizing *sizing, struct vg_display *show,
                        struct vg_error *err)
 {
   const size_t n_sheet = r->slices.boundary->n_sheet_tri;
-  size_t front_faces = layers ? layers->front.n_face - 2 * n_sheet : 0;
+  const int is_section = r->section.solid.n_point > 0;
+  size_t front_faces = is_section ? r->section.n_front
+                     : layers     ? layers->front.n_face - 2 * n_sheet
+                                  : 0;
   struct put put = { .run = r, .show = show };
   struct vg_flat *flat = NULL;
   double t = vg_display_now();
@@ -475,20 +483,21 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, flat, vg_wants_median_dual(&p->asked),
                             put_slice, &put, &r->judge,
-                            r->layers ? &r->field_judge : NULL, err);
+                            layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
-  if (st >= 0) st = accept(r, err);
+  if (st >= 0) st = accept(r, layers != NULL, err);
   if (st >= 0) st = accept_sheets(r, &p->boundary.surface, &put, err);
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
   st = vg_comm_agree(r->comm, st, err);
   if (st >= 0)
     st = vg_run_pictures_gather(&r->pictures, r->comm,
-                                vg_partition_slices(r->field),
+                                is_section ? &r->slices
+                                           : vg_partition_slices(r->field),
                                 r->slices.n_layer_cell[VG_SLICE_TET],
                                 r->threads,
-                                r->layers ? &r->field_judge : &r->judge, err);
+                                layers ? &r->field_judge : &r->judge, err);
 done:
   vg_run_stage_ends(r, VG_STAGE_CHECK);
   vg_flat_free(flat);
@@ -521,20 +530,21 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   vg_status st = vg_team_open(r->comm, &team, err);
 
   if (st < 0) return st;
-  if (leads_node(r)) {
-    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->asked), team, show,
-                       &sizing, err);
+  if (vg_run_leads_node(r)) {
+    st = vg_run_measure_sizes(r, p, surface, 1,
+                              vg_run_node_threads(r, &p->asked), team, show,
+                              &sizing, err);
     st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
   }
-  VG_TRY(share_with_node(r, st, NULL, show, &sizing, err));
+  VG_TRY(vg_run_share_with_node(r, st, NULL, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change, err));
   VG_TRY(find_ineffective_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
   VG_TRY(stop_here(r, show, err));
   r->slices = *vg_partition_slices(r->field);
   VG_TRY(vg_comm_agree(r->comm, part_sheets(r, err), err));
-  st = judge(r, p, NULL, sizing, show, err);
+  st = vg_run_judge(r, p, NULL, sizing, show, err);
 done:
   vg_sizing_free(sizing);
   return st;
@@ -548,13 +558,13 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_sizing **sizing, struct vg_error *err)
 {
   struct vg_mesh view = VG_MESH_INIT, front;
-  int threads = node_threads(r, &p->asked);
+  int threads = vg_run_node_threads(r, &p->asked);
   double t;
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(layers, &p->boundary, &view, err));
-  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team, show,
-                       sizing, err));
+  VG_TRY(vg_run_measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team,
+                              show, sizing, err));
   t = vg_display_now();
   layers->options.threads = threads;
   layers->options.team = team;
@@ -564,7 +574,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   vg_sizing_free(*sizing);
   *sizing = NULL;
   front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
-  st = measure_sizes(r, p, &front, 1, threads, team, show, sizing, err);
+  st = vg_run_measure_sizes(r, p, &front, 1, threads, team, show, sizing, err);
 done:
   layers->options.team = NULL;
   st = vg_team_close(team, st, err);
@@ -640,8 +650,9 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
   vg_status st = vg_team_open(r->comm, &team, err);
 
   if (st < 0) return st;
-  if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
-  VG_TRY(share_with_node(r, st, &layers->layers, show, &sizing, err));
+  if (vg_run_leads_node(r))
+    st = grow_layers(r, p, layers, team, show, &sizing, err);
+  VG_TRY(vg_run_share_with_node(r, st, &layers->layers, show, &sizing, err));
   front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
   VG_TRY(vg_run_agree(r->comm, &p->boundary.surface, &layers->layers, sizing,
                       r->options.change, err));
@@ -657,7 +668,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             &r->layers, &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
-  VG_TRY(judge(r, p, &layers->layers, sizing, show, err));
+  VG_TRY(vg_run_judge(r, p, &layers->layers, sizing, show, err));
   st = measure_tops(r, p, layers, err);
 done:
   vg_sizing_free(sizing);
@@ -695,8 +706,9 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
   r->threads = p->resolved.settings.threads ? (int)p->resolved.settings.threads
                                             : vg_comm_default_threads(r->comm);
   r->pictures.is_on = r->outputs && p->resolved.settings.report_html;
-  st = layers->is_on ? mesh_layers(r, p, layers, show, err)
-                     : mesh_plain(r, p, show, err);
+  st = p->read.is_section ? vg_run_section(r, p, layers, show, err)
+     : layers->is_on      ? mesh_layers(r, p, layers, show, err)
+                          : mesh_plain(r, p, show, err);
   return st < 0 ? st : part_for_solver(r, p, show, err);
 }
 
@@ -705,6 +717,7 @@ void vg_run_release(struct vg_run *r, int success)
   vg_solver_slices_close(r->parts);
   vg_run_pictures_release(&r->pictures);
   vg_layer_slices_close(r->layers);
+  vg_section_mesh_release(&r->section);
   vg_mesh_release(&r->parted_boundary);
   free(r->sheets);
   vg_partition_free(r->field);

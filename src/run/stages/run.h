@@ -8,6 +8,7 @@
 
 #include "base/comm.h"
 #include "core/judge/judge_slices.h"
+#include "core/judge/plane_quality.h"
 #include "core/judge/sheet_sides.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
@@ -18,6 +19,7 @@
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"
+#include "run/section/section_mesh.h"
 #include "run/stages/agree.h"
 #include "run/stages/output.h"
 #include "run/stages/pictures.h"
@@ -73,6 +75,9 @@ struct vg_run {
   struct vg_store *store;
   struct vg_store_report stored;
   struct vg_layer_slices *layers; /* NULL without layers. */
+  struct vg_section_mesh section; /* The mesh of a plane section; empty for a
+                                     surface in space. */
+  struct vg_plane_report plane;
   struct vg_slices slices;        /* The mesh. */
   struct vg_mesh parted_boundary; /* Its boundary and its sheets, if it has
                                      sheets and no layers. */

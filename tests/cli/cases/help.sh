@@ -17,6 +17,7 @@ expect "Edge lengths" hmin
 expect "Surface and" half
 expect "CAD" cad-chord
 expect "Remeshing" edges-per-turn
+expect "Plane sections" te-cells
 expect "Outer" farfield-lengths
 expect "Viscous" layer-max
 expect "Limits" min-full
@@ -25,7 +26,7 @@ expect "Domain" leaf-cells
 expect "Output" report-html
 # No group is empty, and no option is listed twice.
 sed -n 's/^ \([A-Z].*:\)$/\1/p' out >titles
-[ "$(wc -l <titles)" = 12 ] || fail "$(wc -l <titles) groups, not 12"
+[ "$(wc -l <titles)" = 13 ] || fail "$(wc -l <titles) groups, not 13"
 while read -r title; do
   [ -n "$(group "$title")" ] || fail "no options under '$title'"
 done <titles

@@ -9,6 +9,7 @@ head -n -1 octa.obj >open.obj
 vanguard demo box --cells 2000 --out p
 vanguard demo wing-half --cells 30000 --out p
 vanguard demo sphere --cells 20000 --out p
+vanguard demo aerofoil --cells 3000 --out p
 cat >one.vtu <<'END'
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
 <UnstructuredGrid><Piece NumberOfPoints="1" NumberOfCells="0">
@@ -51,6 +52,8 @@ reports check 1 check -q --json open.obj --farfield none
 reports check 1 check -q --json nosuch.stl
 : >empty.stl
 reports check 1 check -q --json empty.stl
+reports report 0 mesh -q --json -p p/aerofoil --out foil
+reports check 0 check -q --json p/aerofoil.dat --deck p/aerofoil.deck
 }
 # 2: wrong usage. Without a command to report on, nothing is on standard output.
 for words in "mesh --no-such -p p/box" "mesh -p p/box --growth 0.5" \

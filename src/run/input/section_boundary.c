@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* The boundary of a mesh in two dimensions. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/section/section.h"
+#include "layers/expand/join.h"
+#include "run/input/shape_parts.h"
+#include "run/section/section_surface.h"
+#include "run/settings/plan_options.h"
+
+#define FAN_ANGLE 60.0 /* S96: sharp and blunt trailing edges */
+#define SIZE 0.02      /* S96: largest edge over the length of the section */
+
+void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
+{
+  if (!read->is_section) return;
+  if (s->cells == VG_LAYER_TETS) s->cells = VG_LAYER_HEX;
+  if (isnan(s->layer.fan_angle)) s->layer.fan_angle = FAN_ANGLE;
+}
+
+vg_status vg_problem_refuse_section(const struct vg_problem *p,
+                                    struct vg_error *err)
+{
+  if (!p->read.is_section) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s is a plane section, and this command works on surfaces in "
+                 "space; vanguard mesh makes the mesh in two dimensions, and "
+                 "vanguard check checks the section",
+                 p->read.files.surface);
+}
+
+/* Settings that only surfaces in space have. */
+static vg_status refuse_settings(const struct vg_read *r, struct vg_error *err)
+{
+  const struct vg_settings *s = &r->settings;
+  const char *bad = NULL;
+
+  if (s->wrap > 0) bad = "wrap is given";
+  else if (s->close_holes) bad = "close_holes is yes";
+  else if (s->farfield.kind == VG_DOMAIN_NONE) bad = "farfield none is given";
+  else if (s->farfield.kind == VG_DOMAIN_MACH) bad = "farfield mach is given";
+  else if (s->flow == VG_FLOW_INTERNAL) bad = "flow is internal";
+  else if (s->half != VG_HALF_AUTO && s->half != VG_HALF_NO)
+    bad = "a half model is requested";
+  else if (*s->baffles || *s->sheets) bad = "baffles or sheets are given";
+  else if (s->gap_edges > 0) bad = "gap_edges is given";
+  else if (s->n_surface) bad = "the table surface is given";
+  else if (r->metrics) bad = "the file of sizes has metrics";
+  for (size_t i = 0; i < s->n_source && !bad; i++)
+    if (vg_source_is_stretched(&s->source[i])) bad = "a source is stretched";
+  if (!bad) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s is a plane section, for a mesh in two dimensions, but %s, "
+                 "which applies to surfaces in space only; remove this setting",
+                 r->files.surface, bad);
+}
+
+vg_status vg_read_section(struct vg_read *r, struct vg_error *err)
+{
+  struct vg_section s = VG_SECTION_INIT;
+  vg_status st;
+
+  VG_TRY(refuse_settings(r, err));
+  VG_TRY(vg_section_read(r->files.surface, &s, err));
+  VG_TRY(vg_section_strip(&s, &r->surface, err));
+  r->side = VG_SIDE_DEFINED;
+done:
+  vg_section_release(&s);
+  return st;
+}
+
+/* --- edges --------------------------------------------------------------- */
+
+struct requests {
+  const struct vg_boundary *b;
+  struct vg_sizing_options options;
+};
+
+static double request_at(void *user, const double x[2])
+{
+  const struct requests *q = user;
+  const struct vg_settings *s = &q->b->read->settings;
+  const struct vg_size_map *map = q->b->map;
+  const double p[3] = { x[0], x[1], 0 };
+  double h = INFINITY;
+
+  if (s->n_source)
+    h = vg_sizing_sources_at(&q->options, s->n_source, s->source, p);
+  return map && map->at ? fmin(h, map->at(map->user, p)) : h;
+}
+
+static double extent_of(const struct vg_mesh *m)
+{
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  return fmax(hi[0] - lo[0], hi[1] - lo[1]);
+}
+
+/* The features to which the spacings refer. */
+static void note_found(const struct vg_boundary *b,
+                       const struct vg_section_found *found)
+{
+  for (size_t i = 0; i < b->surface.n_patch; i++) {
+    const struct vg_section_found *f = &found[i];
+    char edge[120];
+
+    if (f->base > 0)
+      snprintf(edge, sizeof edge, "blunt, %.4g wide (%.3g %% of the chord)",
+               f->base, 100 * f->base / f->chord);
+    else snprintf(edge, sizeof edge, f->is_corner ? "sharp" : "smooth");
+    vg_note(b->notes,
+            "section %s: chord %.6g, trailing edge at (%.6g, %.6g) %s, %zu "
+            "corners, %zu edges",
+            b->surface.patch[i].name, f->chord, f->start[0], f->start[1], edge,
+            f->n_corner, f->n_edge);
+  }
+}
+
+vg_status vg_boundary_divide_section(struct vg_boundary *b,
+                                     struct vg_error *err)
+{
+  struct vg_section_found *found = vg_alloc(b->surface.n_patch, sizeof *found);
+  vg_status st;
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_remesh_options o = vg_options_remesh(s);
+  struct requests q = { b, vg_boundary_sizing(b) };
+  const struct vg_section_shares shares = {
+    .nose = s->nose_spacing / 100 * s->scale,
+    .corner = s->tail_spacing / 100 * s->scale
+  };
+  const struct vg_outline_sizes sizes = {
+    .largest = (o.h_max > 0 ? o.h_max : SIZE * extent_of(&b->surface)) *
+               s->scale,
+    .smallest = o.h_min * s->scale,
+    .per_turn = o.per_turn / s->scale,
+    .growth = vg_options_growth(s),
+    .n_base = (size_t)(s->tail_cells
+                         ? fmax(1,
+                                floor((double)s->tail_cells / s->scale + 0.5))
+                         : 0),
+    .at = request_at,
+    .user = &q
+  };
+
+  if (!found) return vg_fail_memory(err, "the edges of a section");
+  b->flow.kind = VG_FLOW_EXTERNAL;
+  b->flow.axis = -1;
+  st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
+  if (st >= 0) note_found(b, found);
+  free(found);
+  return st;
+}
+
+/* --- farfield ------------------------------------------------------------ */
+
+static struct vg_section_outer outer_of(const struct vg_boundary *b,
+                                        const struct vg_farfield *f)
+{
+  const double size = f->size > 0 ? f->size
+                                  : f->lengths * extent_of(&b->surface);
+  struct vg_section_outer o = { .is_box = f->kind == VG_FARFIELD_BOX,
+                                .radius = size };
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(&b->surface, lo, hi);
+  for (int k = 0; k < 2; k++) {
+    o.centre[k] = f->has_centre ? f->centre[k] : 0.5 * (lo[k] + hi[k]);
+    o.lo[k] = f->has_box ? f->lo[k] : o.centre[k] - size;
+    o.hi[k] = f->has_box ? f->hi[k] : o.centre[k] + size;
+  }
+  return o;
+}
+
+struct edges {
+  const struct vg_sizing *sizing;
+  double most;
+};
+
+static double edge_at(void *user, const double x[3])
+{
+  const struct edges *e = user;
+
+  return fmin(vg_sizing_at(e->sizing, x), e->most);
+}
+
+vg_status vg_boundary_close_section(struct vg_boundary *b,
+                                    struct vg_display *show,
+                                    struct vg_error *err)
+{
+  const struct vg_farfield far = vg_boundary_farfield(b);
+  const struct vg_section_outer outer = outer_of(b, &far);
+  struct vg_sizing_options options = vg_boundary_sizing(b);
+  struct vg_mesh view = VG_MESH_INIT;
+  struct vg_sizing *sizing = NULL;
+  struct edges edges;
+  struct vg_size_function size = { edge_at, &edges, { vg_display_stop, show } };
+  const size_t n_tri = b->surface.n_tri;
+  vg_status st;
+
+  vg_display_update(show, "farfield", 0, 0);
+  VG_TRY(vg_section_sizes(&b->surface, &view, err));
+  if (!(options.h_max > 0)) options.h_max = INFINITY;
+  options.threads = b->threads;
+  VG_TRY(
+    vg_boundary_measure(b, &options, &b->read->settings, &view, &sizing, err));
+  edges = (struct edges){ sizing, far.spacing > 0 ? far.spacing : INFINITY };
+  VG_TRY(vg_section_close(&b->surface, &outer, &size, err));
+  b->domain.added_farfield = 1;
+  b->domain.symmetry_axis = -1;
+  b->domain.n_added_tri = b->surface.n_tri - n_tri;
+done:
+  free(view.point);
+  free(view.tri);
+  free(view.tri_patch);
+  vg_sizing_free(sizing);
+  return st;
+}
+
+double vg_section_width(const struct vg_settings *s, const struct vg_mesh *slab)
+{
+  const size_t n = vg_section_points(slab);
+  double most = 0;
+  size_t t = 0;
+
+  if (s->section_width > 0) return s->section_width;
+  for (size_t patch = 0; patch + 3 < slab->n_patch; patch++) {
+    double lo = INFINITY, hi = -INFINITY;
+
+    for (; t < slab->n_tri && slab->tri_patch[t] == patch; t++)
+      for (int k = 0; k < 3; k++) {
+        const uint32_t v = slab->tri[t][k];
+
+        if (v >= n) continue;
+        lo = fmin(lo, slab->point[v][0]);
+        hi = fmax(hi, slab->point[v][0]);
+      }
+    most = fmax(most, hi - lo);
+  }
+  return most;
+}

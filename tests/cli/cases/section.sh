@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Meshes in two dimensions from plane sections: cells, angles and patches, the
+# formats, the same bytes for all threads and ranks, families, and refusals.
+vanguard demo aerofoil --out d
+exits 0
+says out "Next: vanguard mesh -p d/aerofoil"
+formats=su2,msh,foam,b8.ugrid,fun3d.mapbc
+vanguard --version --verbose
+if grep -qE "HDF5 +not in" out; then cgns=; else cgns=,cgns; fi
+vanguard mesh -q -p d/aerofoil --out a --write $formats$cgns \
+  --min-full 100 --threads 1
+exits 0
+says out "trailing edge at (1, 0) sharp, 1 corners"
+says out "triangles with an angle below 10, 20, 30 degrees: 0 0 0"
+says a/aerofoil.su2 "NDIME= 2"
+says a/aerofoil.su2 "MARKER_TAG= NACA_0012"
+says a/aerofoil.su2 "MARKER_TAG= farfield"
+says a/aerofoil.msh "2 3 \"fluid\""
+says a/aerofoil.fun3d.mapbc "6663"
+grep -c "type  *empty" a/aerofoil.openfoam/constant/polyMesh/boundary >count
+[ "$(cat count)" = 2 ] || fail "not two empty patches"
+says a/aerofoil.report.json '"plane": {'
+
+# Every rank and every thread gives the same files.
+vanguard mesh -q -p d/aerofoil --out b --write $formats$cgns \
+  --min-full 100 --threads 3
+exits 0
+for file in su2 msh b8.ugrid mapbc resolved.deck wall.vtu ${cgns#,}; do
+  same a/aerofoil.$file b/aerofoil.$file
+done
+same a/aerofoil.openfoam/constant/polyMesh/faces \
+  b/aerofoil.openfoam/constant/polyMesh/faces
+
+# The checks of the mesh one cell thick.
+vanguard check -q a/aerofoil.b8.ugrid
+exits 0
+says out "validity: valid"
+vanguard check -q d/aerofoil.dat --deck d/aerofoil.deck
+exits 0
+says out "vanguard mesh accepts this surface"
+
+# Cells across a blunt trailing edge; the plane of FUN3D.
+vanguard demo aerofoil-blunt --out d
+exits 0
+vanguard mesh -q -p d/aerofoil-blunt --out e --te-cells 9 --section-axis y \
+  --section-width 0.5 --write su2,b8.ugrid,fun3d.mapbc
+exits 0
+says out "blunt, 0.00252 wide (0.252 % of the chord), 2 corners"
+says e/aerofoil-blunt.fun3d.mapbc "6662"
+awk '/NPOIN/ { n = $2; next } n > 0 { n--; if ($1 == 1 && $2 > -0.0013 &&
+     $2 < 0.0013) on++ } END { exit on != 10 }' e/aerofoil-blunt.su2 ||
+  fail "not 9 edges across the trailing edge"
+
+# A family: half the edges, four times the cells.
+cells()
+{
+  sed -n 's/^NELEM= //p' "$1"
+}
+for scale in 1 0.5; do
+  vanguard mesh -q -p d/aerofoil --out f$scale --write su2 --scale $scale \
+    --scale-layers even
+  exits 0
+done
+awk -v a="$(cells f1/aerofoil.su2)" -v b="$(cells f0.5/aerofoil.su2)" \
+  'BEGIN { exit !(b / a > 3.8 && b / a < 4.2) }' || fail "not a family"
+
+# Two elements, without layers, in a box; a source refines the wake.
+cat >two.dat <<'END'
+main
+1 0
+0.5 0.1
+0.2 0.08
+0 0
+0.2 -0.08
+0.5 -0.1
+1 0
+flap
+1.5 -0.1
+1.3 -0.05
+1.1 -0.08
+1.3 -0.12
+1.5 -0.1
+END
+cat >two.deck <<'END'
+two elements
+
+layers
+no
+
+farfield
+kind  lengths
+box   10
+
+sources
+kind  x0   y0    z0  x1  y1    z1  h0    r0
+line  1.5  -0.1  0   4   -0.1  0   0.05  0.1
+END
+vanguard mesh -q -p two.dat --out g --write su2
+exits 0
+says g/two.su2 "MARKER_TAG= flap"
+says out "quadrilaterals                         0"
+
+# Refusals leave nothing behind.
+vanguard surface -q d/aerofoil.dat --out s
+exits 1
+says err "is a plane section"
+vanguard plan -q -p d/aerofoil
+exits 1
+says err "is a plane section"
+vanguard mesh -q -p two.dat --out h --farfield none
+exits 1
+says err "farfield none is given"
+vanguard mesh -q -p two.dat --out h --farfield-size 0.5
+exits 1
+says err "does not contain the section"
+printf 'a\n1 0\n0.5 nan\n' >bad.dat
+vanguard mesh -q -p bad.dat --out h
+exits 1
+says err "bad.dat:3: expected a point with two finite coordinates x y"
+[ ! -e h ] || fail "a refused run left files"
