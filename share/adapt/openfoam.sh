@@ -46,6 +46,16 @@ step() {
   }
 }
 
+# mapFields of OpenFOAM 1912 ends with a signal on meshes in two dimensions.
+map_fields() {
+  mapFields "$previous" -consistent -sourceTime latestTime \
+    >log.mapFields 2>&1 && return
+  echo "openfoam.sh: mapFields failed (log.mapFields): this cycle starts from" \
+    "the fields in $template/0"
+  rm -rf 0
+  cp -r "$template_path/0" .
+}
+
 # The last values of all tables of function objects: NAME:COLUMN,VALUE.
 outputs() {
   local file
@@ -74,12 +84,12 @@ case=$folder/case previous=${VANGUARD_PREVIOUS:+$VANGUARD_PREVIOUS/case}
 [ -d "$template/system" ] || die "$template is no case: it has no folder system"
 [ -d "$mesh" ] || die "there is no $mesh: add foam to the setting write"
 find_openfoam
+template_path=$(realpath "$template")
 rm -rf "$case"
-cp -r "$template" "$case"
+cp -r "$template_path" "$case"
 cp -r "$mesh" "$case/constant/"
 cd "$case"
-[ -z "$previous" ] || step mapFields \
-  mapFields "$previous" -consistent -sourceTime latestTime
+[ -z "$previous" ] || map_fields
 application=$(foamDictionary -entry application -value system/controlDict)
 if [ "$ranks" -gt 1 ]; then
   foamDictionary -entry numberOfSubdomains -set "$ranks" \

@@ -246,7 +246,9 @@ static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
   snprintf(name, sizeof name, "%.250s.report.json", a->stem);
   if (vg_adapt_path(c->dir, name, &path, NULL) < 0) return;
   o = json_load_file(path, 0, NULL);
-  field = json_object_get(o, "field") ? "field" : "mesh";
+  field = json_object_get(o, "plane")   ? "plane"
+          : json_object_get(o, "field") ? "field"
+                                        : "mesh";
   c->cells = number_at(o, "mesh", "cells");
   c->points = number_at(o, "mesh", "points");
   c->field_cells = number_at(o, field, "cells");
