@@ -2,6 +2,7 @@
 # First heights from the wall shear of a solution: with a known skin friction,
 # the heights measured in the mesh are those of the requested y+. The mesh does
 # not depend on threads and ranks, and invalid solutions are refused.
+needs tetgen
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 command -v python3 >/dev/null || skip "no python3"
