@@ -288,6 +288,7 @@ static void a_refused_form_names_the_field(void **state)
   refuses("s.sizes", path, "not a path below");
   refuses("s.mapbc", path, "not a path below");
   refuses("s.first_from", "/etc/passwd", "not a path below");
+  refuses("s.first_from", scene.root, "is a folder");
   /* Values that contradict each other: the first setting of the message. */
   refuses("s.y_plus", "1", "y_plus requires reynolds");
   refuses("s.constant_direction", "yes", "requires a split_direction");

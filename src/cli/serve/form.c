@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli/http/inside.h"
 #include "cli/serve/rows.h"
@@ -148,6 +149,14 @@ static vg_status check_path(const char *root, const char *setting,
   return st;
 }
 
+/* The files of a folder could be links to other places. */
+static int is_folder(const char *path)
+{
+  struct stat s;
+
+  return *path && stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
+
 /* Check the resulting settings, whether they come from the form or a deck. */
 static vg_status check_paths(const char *root, struct vg_settings *s,
                              struct vg_form_fault *fault, struct vg_error *err)
@@ -169,6 +178,10 @@ static vg_status check_paths(const char *root, struct vg_settings *s,
   VG_TRY(check_path(root, "sizes", s->sizes, err));
   strcpy(fault->field, "s.first_from");
   VG_TRY(check_path(root, "first_from", s->layer.first_from, err));
+  if (is_folder(s->layer.first_from))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first_from: %s is a folder; the portal takes one file",
+                   s->layer.first_from);
   strcpy(fault->field, "s.mapbc");
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
   fault->field[0] = 0;

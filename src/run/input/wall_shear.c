@@ -3,10 +3,13 @@
 #include "run/input/wall_shear.h"
 
 #include <assert.h>
+#include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/memory.h"
 #include "core/geometry/nearest.h"
@@ -37,6 +40,7 @@ struct vg_wall_shear {
   double (*x)[3];     /* [n_point] */
   double *cf;         /* [n_point] */
   uint32_t (*tri)[3]; /* [n_tri] */
+  size_t cap_x, cap_cf, cap_tri;
   struct vg_box_tree tree;
 };
 
@@ -74,8 +78,8 @@ static vg_status no_memory(struct vg_error *err)
 
 /* The array that the settings name, or the only one with a usual name. */
 static vg_status choose_field(const struct vg_layer_settings *l,
-                              struct vg_input *in, const char **out,
-                              struct vg_error *err)
+                              const char *path, struct vg_input *in,
+                              const char **out, struct vg_error *err)
 {
   char names[NAMES];
 
@@ -86,21 +90,22 @@ static vg_status choose_field(const struct vg_layer_settings *l,
       return vg_fail(err, VG_ERR_INPUT,
                      "%s has both point arrays '%s' and '%s': name the one to "
                      "use by --first-field",
-                     l->first_from, *out, usual[i]);
+                     path, *out, usual[i]);
     *out = usual[i];
   }
   if (*out && vg_vtu_has_array(in, *out)) return VG_OK;
   vg_vtu_array_names(in, "PointData", names, sizeof names);
   if (*out || *names)
-    return vg_solution_no_array(l->first_from, *out ? *out : "",
-                                "--first-field", in, err);
+    return vg_solution_no_array(path, *out ? *out : "", "--first-field", in,
+                                err);
   *out = usual[0]; /* The reader says what is wrong with the file. */
   return VG_OK;
 }
 
 /* A stress is not taken for a coefficient in silence. */
-static vg_status factor_of(const struct vg_layer_settings *l, const char *field,
-                           double *factor, struct vg_error *err)
+static vg_status factor_of(const struct vg_layer_settings *l, const char *path,
+                           const char *field, double *factor,
+                           struct vg_error *err)
 {
   *factor = l->first_scale > 0 ? l->first_scale : 1;
   if (l->first_scale > 0 || strcmp(field, usual[N_COEFFICIENT]) != 0)
@@ -110,7 +115,7 @@ static vg_status factor_of(const struct vg_layer_settings *l, const char *field,
                  "the factor between them as --first-scale, which is 2/U^2 if "
                  "the solver divides by the density (incompressible), else 2 "
                  "/ (rho U^2), with density and velocity of the free stream",
-                 l->first_from, field);
+                 path, field);
 }
 
 /* Coefficient at a point: the value, or the length of the vector. */
@@ -187,7 +192,7 @@ static vg_status add_boundary(struct walls *w, const char *path,
 }
 
 static vg_status find_walls(struct walls *w, const char *path,
-                            const char *field, struct vg_error *err)
+                            struct vg_error *err)
 {
   const struct vg_mesh *m = w->m;
   vg_status st = VG_OK;
@@ -198,15 +203,7 @@ static vg_status find_walls(struct walls *w, const char *path,
   if (!m->n_tri && !m->n_quad) st = add_boundary(w, path, err);
   if (st < 0) return st;
   if (w->refused) return no_memory(err);
-  if (w->n > UINT32_MAX / 4)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: more than 2^30 wall faces",
-                   path);
-  if (w->n) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT,
-                 "%s has no walls: '%s' is zero on all of its triangles and "
-                 "quadrilaterals, or on the boundary of its tetrahedra, "
-                 "pyramids, wedges and hexahedra",
-                 path, field);
+  return VG_OK;
 }
 
 static vg_status check(const struct walls *w, const char *path,
@@ -228,37 +225,40 @@ static vg_status check(const struct walls *w, const char *path,
   return VG_OK;
 }
 
-/* Moves the walls and the points that they use to the result. */
-static vg_status keep(struct walls *w, struct vg_wall_shear *out,
-                      struct vg_error *err)
+/* Adds the walls and the points that they use to the result. */
+static vg_status keep(struct walls *w, const char *path,
+                      struct vg_wall_shear *out, struct vg_error *err)
 {
   const struct vg_mesh *m = w->m;
   uint32_t *number = vg_calloc(m->n_point, sizeof *number);
-  size_t n = 0;
+  size_t n = out->n_point;
 
   if (!number) return no_memory(err);
   for (size_t i = 0; i < 3 * w->n; i++) number[w->tri[i / 3][i % 3]] = 1;
   for (size_t p = 0; p < m->n_point; p++)
     if (number[p]) number[p] = (uint32_t)n++;
-  out->x = vg_alloc(n, sizeof *out->x);
-  out->cf = vg_alloc(n, sizeof *out->cf);
-  if (!out->x || !out->cf) {
+  if (n > UINT32_MAX / 2 || out->n_tri + w->n > UINT32_MAX / 4) {
+    free(number);
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: more than 2^30 wall faces",
+                   path);
+  }
+  if (vg_reserve(&out->x, &out->cap_x, n, sizeof *out->x) ||
+      vg_reserve(&out->cf, &out->cap_cf, n, sizeof *out->cf) ||
+      vg_reserve(&out->tri, &out->cap_tri, out->n_tri + w->n,
+                 sizeof *out->tri)) {
     free(number);
     return no_memory(err);
   }
   for (size_t i = 0; i < 3 * w->n; i++) {
-    uint32_t *v = &w->tri[i / 3][i % 3];
-    const uint32_t p = *v;
+    const uint32_t p = w->tri[i / 3][i % 3], to = number[p];
 
-    *v = number[p];
-    memcpy(out->x[*v], m->point[p], sizeof *out->x);
-    out->cf[*v] = w->cf[p];
+    out->tri[out->n_tri + i / 3][i % 3] = to;
+    memcpy(out->x[to], m->point[p], sizeof *out->x);
+    out->cf[to] = w->cf[p];
   }
   free(number);
   out->n_point = n;
-  out->n_tri = w->n;
-  out->tri = w->tri;
-  w->tri = NULL;
+  out->n_tri += w->n;
   return VG_OK;
 }
 
@@ -277,10 +277,11 @@ static vg_status make_tree(struct vg_wall_shear *w, struct vg_error *err)
   return st;
 }
 
-static vg_status read_file(const struct vg_layer_settings *l,
+/* Adds the walls of a file. */
+static vg_status read_file(const struct vg_layer_settings *l, const char *path,
                            struct vg_wall_shear *out, struct vg_error *err)
 {
-  const char *path = l->first_from, *field = NULL;
+  const char *field = NULL;
   struct vg_input in = VG_INPUT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct walls w = { &m, NULL, 0, 0, NULL, 0 };
@@ -290,21 +291,20 @@ static vg_status read_file(const struct vg_layer_settings *l,
 
   if (!vg_text_ends(path, ".vtu") && !vg_text_ends(path, ".vtp"))
     return vg_fail(err, VG_ERR_INPUT,
-                   "first_from: %s is neither a .vtu nor a .vtp; SU2 writes "
-                   "surface_flow.vtu (SURFACE_PARAVIEW), OpenFOAM's foamToVTK "
-                   "internal.vtu and boundary/*.vtp",
+                   "first_from: %s is neither a .vtu nor a .vtp, nor a folder "
+                   "of them; SU2 writes surface_flow.vtu (SURFACE_PARAVIEW), "
+                   "OpenFOAM's foamToVTK internal.vtu and a folder boundary",
                    path);
   VG_TRY(vg_input_open(path, &in, err));
-  VG_TRY(choose_field(l, &in, &field, err));
+  VG_TRY(choose_field(l, path, &in, &field, err));
   VG_TRY(vg_vtu_values_parse(&in, field, &m, &components, &value, err));
-  VG_TRY(factor_of(l, field, &factor, err));
+  VG_TRY(factor_of(l, path, field, &factor, err));
   VG_TRY(reduce(path, field, components, factor, m.n_point, value, err));
   w.cf = value;
-  VG_TRY(find_walls(&w, path, field, err));
+  VG_TRY(find_walls(&w, path, err));
   VG_TRY(check(&w, path, field, err));
-  VG_TRY(keep(&w, out, err));
-  VG_TRY(make_tree(out, err));
-  out->field = strdup(field);
+  VG_TRY(keep(&w, path, out, err));
+  if (!out->field) out->field = strdup(field);
   if (!out->field) st = no_memory(err);
 done:
   free(value);
@@ -312,6 +312,64 @@ done:
   vg_mesh_release(&m);
   vg_input_release(&in);
   return st;
+}
+
+static int is_vtk(const struct dirent *d)
+{
+  return vg_text_ends(d->d_name, ".vtu") || vg_text_ends(d->d_name, ".vtp");
+}
+
+/* In the same order for all locales. */
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+  return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* Adds the walls of all files in a folder, such as one for each patch. */
+static vg_status read_folder(const struct vg_layer_settings *l,
+                             struct vg_wall_shear *out, struct vg_error *err)
+{
+  struct dirent **list = NULL;
+  const int n = scandir(l->first_from, &list, is_vtk, by_name);
+  vg_status st = VG_OK;
+
+  if (n < 0)
+    return vg_fail(err, errno == ENOMEM ? VG_ERR_MEMORY : VG_ERR_IO,
+                   "%s: cannot list the folder: %s", l->first_from,
+                   strerror(errno));
+  if (!n)
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "first_from: there is no .vtu or .vtp in the folder %s",
+                 l->first_from);
+  for (int i = 0; i < n; i++) {
+    char *path = NULL;
+
+    if (st >= 0 && asprintf(&path, "%s/%s", l->first_from, list[i]->d_name) < 0)
+      path = NULL, st = no_memory(err);
+    if (st >= 0) st = read_file(l, path, out, err);
+    free(path);
+    free(list[i]);
+  }
+  free(list);
+  return st;
+}
+
+static vg_status read_walls(const struct vg_layer_settings *l,
+                            struct vg_wall_shear *out, struct vg_error *err)
+{
+  struct stat s;
+  vg_status st = stat(l->first_from, &s) == 0 && S_ISDIR(s.st_mode)
+                 ? read_folder(l, out, err)
+                 : read_file(l, l->first_from, out, err);
+
+  if (st < 0) return st;
+  if (!out->n_tri)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s has no walls: '%s' is zero on all of its triangles and "
+                   "quadrilaterals, or on the boundary of its tetrahedra, "
+                   "pyramids, wedges and hexahedra",
+                   l->first_from, out->field);
+  return make_tree(out, err);
 }
 
 vg_status vg_read_shear(struct vg_read *r, struct vg_error *err)
@@ -323,7 +381,7 @@ vg_status vg_read_shear(struct vg_read *r, struct vg_error *err)
   if (!*l->first_from || r->shear) return VG_OK;
   w = vg_calloc(1, sizeof *w);
   if (!w) return no_memory(err);
-  st = read_file(l, w, err);
+  st = read_walls(l, w, err);
   if (st < 0) vg_wall_shear_free(w);
   else r->shear = w;
   return st;

@@ -10,11 +10,11 @@ struct vg_wall_shear; /* Opaque, read-only: threads may share it. */
 
 /** Reads the file of the setting `first_from`, if any, into r->shear.
  *
- * The file is a .vtu or .vtp with a point array: the skin friction coefficient
- * c_f = tau_w / (rho U^2 / 2), or a vector whose length it is, or a wall shear
- * stress that `first_scale` turns into it. Walls are the faces of the file, or
- * without any the boundary of its cells, whose values are not zero: solvers
- * write zero on other boundaries and inside.
+ * The file is a .vtu or .vtp, or a folder of them, with a point array: the skin
+ * friction coefficient c_f = tau_w / (rho U^2 / 2), or a vector whose length it
+ * is, or a wall shear stress that `first_scale` turns into it. Walls are the
+ * faces of the file, or without any the boundary of its cells, whose values are
+ * not zero: solvers write zero on other boundaries and inside.
  *
  * VG_ERR_INPUT, VG_ERR_FORMAT: no such array, with the names of those that
  * there are; two arrays with usual names; values that are negative or not

@@ -331,8 +331,8 @@ VG_ROW(REAL, layer, length, "reference_length", 0,
 VG_TEXT_ROW(layer, first_from, VG_LIST_MAX, "first_from", "",
   .unit = "", .argument = "FILE", .help = "Flow solution on an earlier mesh, "
   "whose wall shear corrects the first height of y_plus at each point of the "
-  "walls: a .vtu or .vtp with values at the points; \"\": the flat-plate "
-  "estimate")
+  "walls: a .vtu or .vtp with values at the points, or a folder of them; "
+  "\"\": the flat-plate estimate")
 VG_TEXT_ROW(layer, first_field, VG_LIST_MAX, "first_field", "",
   .unit = "", .argument = "NAME", .help = "Point array of first_from with the "
   "skin friction coefficient, or a vector whose length it is; \"\": cf, Cf, "

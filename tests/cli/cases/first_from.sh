@@ -2,6 +2,7 @@
 # First heights from the wall shear of a solution: with a known skin friction,
 # the heights measured in the mesh are those of the requested y+. The mesh does
 # not depend on threads and ranks, and invalid solutions are refused.
+needs tetgen
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 command -v python3 >/dev/null || skip "no python3"
@@ -38,6 +39,17 @@ if mpirun -n 2 true >/dev/null 2>&1; then
     -p wing --deck tets/wing.resolved.deck --out ranks >out 2>err
   same tets/wing.b8.ugrid ranks/wing.b8.ugrid
 fi
+
+# The same walls in a folder with a file for each patch, of which one is no wall.
+mkdir empty folder
+for patch in 1 2 3; do
+  first_from write wing.lb8.ugrid "folder/$patch.vtp" "$patch" cf "$cf"
+done
+first_from write wing.lb8.ugrid folder/0.vtu 4 cf 0
+vanguard mesh -q -p wing --write b8.ugrid --cells mixed --first-from folder \
+  --out of_folder
+exits 0
+same mixed/wing.b8.ugrid of_folder/wing.b8.ugrid
 
 # The same walls as polygons, and as the boundary of cells.
 vanguard demo sphere --cells 20000 --out .
@@ -116,6 +128,7 @@ refused() {
   absent no
 }
 refused nowhere.vtu "nowhere.vtu"
+refused empty "there is no .vtu or .vtp in the folder empty"
 refused s.csv "neither a .vtu nor a .vtp"
 refused s.vtu "first and first_from are both given" --first 1e-5
 refused s.vtu "first_from requires y_plus" --y-plus 0
