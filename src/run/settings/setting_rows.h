@@ -181,8 +181,8 @@ VG_ROW(REAL, plain, per_turn, "edges_per_turn", remesh.per_turn,
   .help = "Edges per full circle on curved parts of the remeshed surface")
 VG_ROW(REAL, plain, nose_spacing, "le_spacing", 0,
   .use = VG_USE_SECTION, .hi = 100, .unit = "%",
-  .help = "Edge length at the leading edge, in per cent of the chord; 0: by the "
-  "curvature")
+  .help = "Edge length at the leading edge, in per cent of the chord; 0: by "
+  "the curvature")
 VG_ROW(REAL, plain, tail_spacing, "te_spacing", 0.2,
   .use = VG_USE_SECTION, .hi = 100, .unit = "%",
   .help = "Edge length at the trailing edge and other corners, in per cent of "
