@@ -9,6 +9,7 @@
 #include "core/geometry/graded.h"
 
 #define FULL_CIRCLE 6.283185307179586
+#define LEAST 1e-8 /* Edge over the length of the curve. */
 
 enum {
   PER_EDGE = 4,     /* Samples of the requests per edge, */
@@ -61,7 +62,7 @@ static double request_at_point(const struct division *d, size_t i)
 static vg_status add_sample(struct division *d, double s, double h,
                             struct vg_error *err)
 {
-  if (d->n >= SAMPLES_MAX || !(h > 0))
+  if (d->n >= SAMPLES_MAX || !(h > LEAST * d->c->s[d->c->n]))
     return vg_fail(err, VG_ERR_INPUT,
                    "a section of length %g would need edges of length %g; "
                    "check the spacing on it",

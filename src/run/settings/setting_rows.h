@@ -180,18 +180,17 @@ VG_ROW(REAL, plain, per_turn, "edges_per_turn", remesh.per_turn,
   .use = VG_USE_REMESH, .lo = 3, .hi = 10000, .unit = "edges",
   .help = "Edges per full circle on curved parts of the remeshed surface")
 VG_ROW(REAL, plain, nose_spacing, "le_spacing", 0,
-  .use = VG_USE_SECTION, .hi = 100, .unit = "% of the chord",
-  .help = "Edge length at the leading edge of a plane section, in per cent of "
-  "the chord of its element; 0: by the curvature")
+  .use = VG_USE_SECTION, .hi = 100, .unit = "%",
+  .help = "Edge length at the leading edge, in per cent of the chord; 0: by "
+  "the curvature")
 VG_ROW(REAL, plain, tail_spacing, "te_spacing", 0.2,
-  .use = VG_USE_SECTION, .hi = 100, .unit = "% of the chord",
-  .help = "Edge length at the trailing edge of a plane section and at its "
-  "other convex corners, in per cent of the chord of its element; 0: by the "
-  "curvature")
+  .use = VG_USE_SECTION, .hi = 100, .unit = "%",
+  .help = "Edge length at the trailing edge and other corners, in per cent of "
+  "the chord; 0: by the curvature")
 VG_ROW(COUNT, plain, tail_cells, "te_cells", 0,
   .use = VG_USE_SECTION, .hi = 10000, .unit = "edges",
-  .help = "Number of edges across a blunt trailing edge of a plane section; 0: "
-  "by te_spacing")
+  .help = "Number of edges across a blunt trailing edge; 0: as many as "
+  "te_spacing gives")
 VG_ROW(REAL, plain, section_width, "section_width", 0,
   .use = VG_USE_SECTION, LENGTH, .help = "Width of the cells of a mesh in two "
   "dimensions where it is written one cell thick; 0: the largest chord")
