@@ -131,6 +131,9 @@ static const char *const further[][2] = {
     "height is `first` or, if y_plus, reynolds (Re) and reference_length (L) "
     "are above 0, 2 y_plus L / (Re sqrt(cf / 2)) for the skin friction "
     "coefficient cf of a flat plate at the trailing edge" },
+  { "wakes",
+    "wakes: size is at most length, and at most twice height; stream and up "
+    "name different axes" },
   { "corners", "farfield: each lower corner is below the upper one" },
   { "patches", "patches, layers: no two rows have the same number as id" },
   { "bytes",

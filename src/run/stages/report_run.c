@@ -55,6 +55,10 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
   json_object_set_new(o, "sources",
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
+  if (p->read.wakes.n)
+    json_object_set_new(o, "wakes",
+                        vg_report_wakes_json(&p->read.wakes, r->run->n_probe,
+                                             r->run->probe));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
   if (r->run->sheets)
     json_object_set_new(o, "sheets",
@@ -206,6 +210,7 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
   if (r->layers->is_on) vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
+  vg_report_wakes_text(to, &r->problem->read.wakes, m->n_probe, m->probe);
   if (m->parts) {
     fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);
