@@ -66,8 +66,11 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
   size_t at = 0;
 
   *to = *c;
-  if (c->family)
-    at = (size_t)snprintf(part, sizeof part, "f%lld-", (long long)c->family);
+  if (c->family) {
+    vg_sweep_level_name(s->o, c->family, part);
+    strcat(part, "-");
+    at = strlen(part);
+  }
   if (c->bisections >= 0)
     snprintf(part + at, sizeof part - at, "L%lld-", (long long)c->bisections);
   if (c->leaf_cells >= 0)
@@ -82,6 +85,8 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
   to->angle_min = to->peak_memory = to->critical = NAN;
   to->parts_made = (struct vg_sweep_parts){ NAN, NAN, NAN, NAN, NAN, NAN };
   for (int k = 0; k < VG_MEMBER_N; k++) to->member[k] = NAN;
+  for (int k = 0; k < VG_FIGURE_N; k++) to->figure[k] = NAN;
+  to->is_planned = vg_sweep_is_in(&s->o->planned, c->family);
   if (asprintf(&to->dir, "%s/%s", s->o->dir, to->name) < 0) {
     to->dir = NULL;
     return vg_fail_memory(err, "a path");
@@ -130,6 +135,7 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   vg_status st;
 
   VG_TRY(check_extra(o, err));
+  VG_TRY(vg_sweep_check_named(o, err));
   s->o = o;
   if (!n_mesh) n_mesh = 1;
   n = n_mesh * n_member;
@@ -174,11 +180,52 @@ static vg_status add_member(struct vg_words *w,
   char text[40];
   vg_status st;
 
-  snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(c->family));
+  if (o->rule != VG_FAMILY_PLAIN)
+    return vg_sweep_add_named(w, o, c->family, err);
+  snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(o, c->family));
   VG_TRY(vg_words_add(w, "--scale", err));
   VG_TRY(vg_words_add(w, text, err));
   VG_TRY(vg_words_add(w, "--scale-layers", err));
   st = vg_words_add(w, "workshop", err);
+done:
+  return st;
+}
+
+/* The program and the project. A forecast runs on one rank. */
+static vg_status begin_line(const struct vg_sweep_options *o,
+                            const struct vg_sweep_case *c, struct vg_words *w,
+                            struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!c->is_planned)
+    VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
+  VG_TRY(
+    vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(), err));
+  VG_TRY(vg_words_add(w, c->is_planned ? "plan" : "mesh", err));
+  VG_TRY(vg_words_add(w, "-p", err));
+  VG_TRY(vg_words_add(w, o->project, err));
+  if (o->deck) {
+    VG_TRY(vg_words_add(w, "--deck", err));
+    VG_TRY(vg_words_add(w, o->deck, err));
+  }
+done:
+  return st;
+}
+
+/* Where the results go. */
+static vg_status add_outputs(const struct vg_sweep_case *c, struct vg_words *w,
+                             struct vg_error *err)
+{
+  vg_status st;
+
+  if (c->is_planned) {
+    VG_TRY(vg_words_add(w, "-q", err));
+    return vg_words_add(w, "--json", err);
+  }
+  VG_TRY(vg_words_add(w, "--timeline", err));
+  VG_TRY(vg_words_add(w, "-o", err));
+  st = vg_words_add(w, c->dir, err);
 done:
   return st;
 }
@@ -189,16 +236,7 @@ static vg_status command_line(const struct vg_sweep_options *o,
 {
   vg_status st;
 
-  VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
-  VG_TRY(
-    vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(), err));
-  VG_TRY(vg_words_add(w, "mesh", err));
-  VG_TRY(vg_words_add(w, "-p", err));
-  VG_TRY(vg_words_add(w, o->project, err));
-  if (o->deck) {
-    VG_TRY(vg_words_add(w, "--deck", err));
-    VG_TRY(vg_words_add(w, o->deck, err));
-  }
+  VG_TRY(begin_line(o, c, w, err));
   VG_TRY(vg_words_pair(w, "--threads", c->threads, err));
   if (c->bisections >= 0)
     VG_TRY(vg_words_pair(w, "--bisections", c->bisections, err));
@@ -211,9 +249,7 @@ static vg_status command_line(const struct vg_sweep_options *o,
   if (c->subdomains >= 0)
     VG_TRY(vg_words_pair(w, "--subdomains", c->subdomains, err));
   if (c->family) VG_TRY(add_member(w, o, c, err));
-  VG_TRY(vg_words_add(w, "--timeline", err));
-  VG_TRY(vg_words_add(w, "-o", err));
-  VG_TRY(vg_words_add(w, c->dir, err));
+  VG_TRY(add_outputs(c, w, err));
   for (int i = 0; i < o->n_extra; i++)
     VG_TRY(vg_words_add(w, o->extra[i], err));
 done:
@@ -238,18 +274,19 @@ static void remove_stale(const char *dir)
 
   while (d && (e = readdir(d)))
     if (ends_with(e->d_name, ".report.json") ||
+        !strcmp(e->d_name, "plan.json") ||
         ends_with(e->d_name, ".timeline.json"))
       unlinkat(dirfd(d), e->d_name, 0);
   if (d) closedir(d);
 }
 
 /* Execute the command in the child process; never returns. */
-static void become(char **word, int log, const sigset_t *mask)
+static void become(char **word, int out, int log, const sigset_t *mask)
 {
   sigprocmask(SIG_SETMASK, mask, NULL);
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
-  dup2(log, STDOUT_FILENO);
+  dup2(out, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
   execvp(word[0], word);
   dprintf(STDERR_FILENO, "cannot start %s: %s\n", word[0], strerror(errno));
@@ -274,7 +311,7 @@ static int wait_for(pid_t child, const sigset_t *chld)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
+static vg_status spawn(struct vg_sweep_case *c, char **word, int out, int log,
                        struct vg_error *err)
 {
   sigset_t chld, before;
@@ -286,7 +323,7 @@ static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
   sigprocmask(SIG_BLOCK, &chld, &before);
   fflush(NULL);
   child = fork();
-  if (child == 0) become(word, log, &before);
+  if (child == 0) become(word, out, log, &before);
   if (child > 0) c->exit_status = wait_for(child, &chld);
   sigprocmask(SIG_SETMASK, &before, NULL);
   if (child < 0)
@@ -297,28 +334,34 @@ static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
   return VG_OK;
 }
 
+/* Create a file in the folder of the case; *path: to be freed. */
+static vg_status create(const struct vg_sweep_case *c, const char *name,
+                        char **path, int *fd, struct vg_error *err)
+{
+  if (asprintf(path, "%s/%s", c->dir, name) < 0) {
+    *path = NULL;
+    return vg_fail_memory(err, "a path");
+  }
+  *fd = open(*path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  return *fd >= 0 ? VG_OK
+                  : vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", *path,
+                            strerror(errno));
+}
+
 vg_status vg_sweep_run(const struct vg_sweep_options *o,
                        struct vg_sweep_case *c, struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
-  char *path = NULL;
-  int log = -1;
+  char *path = NULL, *plan = NULL;
+  int log = -1, out = -1;
   vg_status st;
 
   VG_TRY(vg_make_folder(c->dir, err));
   remove_stale(c->dir);
   VG_TRY(command_line(o, c, &w, err));
-  if (asprintf(&path, "%s/run.log", c->dir) < 0) {
-    path = NULL;
-    st = vg_fail_memory(err, "a path");
-    goto done;
-  }
-  log = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (log < 0) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path, strerror(errno));
-    goto done;
-  }
-  VG_TRY(spawn(c, w.word, log, err));
+  VG_TRY(create(c, "run.log", &path, &log, err));
+  if (c->is_planned) VG_TRY(create(c, "plan.json", &plan, &out, err));
+  VG_TRY(spawn(c, w.word, c->is_planned ? out : log, log, err));
   /* If a limit on the layers is not met, the mesh is complete nevertheless. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
                c->exit_status == VG_EXIT_LIMIT;
@@ -327,7 +370,9 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
     st = vg_fail(err, VG_ERR_IO, "interrupted during %s", c->name);
 done:
   if (log >= 0) close(log);
+  if (out >= 0) close(out);
   vg_words_release(&w);
   free(path);
+  free(plan);
   return st;
 }

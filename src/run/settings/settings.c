@@ -329,7 +329,8 @@ static const struct vg_param sweep_columns[] = {
     "every entry of subdomains, in addition to the cases of the other lists; "
     "\"\": as the setting"),
   LIST("subdomains", subdomains, "Numbers of subdomains; \"\": as the setting"),
-  LIST("family", family, "Levels of a grid family; \"\": none"),
+  LIST("family", family,
+       "Levels of a grid family, as in 1:3, dpw:1-6 or hlpw:A-F; \"\": none"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
     .unit = "times", .help = "Number of runs of each case; 0: one" },
 };

@@ -45,6 +45,26 @@ static json_t *helpers_json(void)
   return o;
 }
 
+static json_t *size_json(const struct vg_run *r)
+{
+  static const char *const kind[VG_SLICE_KINDS] = { "tetrahedra", "pyramids",
+                                                    "prisms", "hexahedra" };
+  const struct vg_slices *s = &r->slices;
+  json_t *o = json_object();
+
+  json_object_set_new(o, "points", json_integer((json_int_t)s->n_point));
+  json_object_set_new(o, "cells", json_integer((json_int_t)vg_run_cells(r)));
+  for (int k = 0; k < VG_SLICE_KINDS; k++)
+    json_object_set_new(o, kind[k], json_integer((json_int_t)s->n_cell[k]));
+  json_object_set_new(o, "boundary_points",
+                      json_integer((json_int_t)s->n_boundary_point));
+  json_object_set_new(o, "boundary_triangles",
+                      json_integer((json_int_t)s->boundary->n_tri));
+  json_object_set_new(o, "boundary_quadrilaterals",
+                      json_integer((json_int_t)s->boundary->n_quad));
+  return o;
+}
+
 static void put_mesh(json_t *o, const struct vg_run_report *r)
 {
   const struct vg_problem *p = r->problem;
@@ -55,6 +75,7 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
   json_object_set_new(o, "sources",
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
+  json_object_set_new(o, "size", size_json(r->run));
   if (p->read.wakes.n)
     json_object_set_new(o, "wakes",
                         vg_report_wakes_json(&p->read.wakes, r->run->n_probe,
