@@ -133,6 +133,7 @@ static vg_status find_sides(struct finder *f, int is_internal,
     goto done;
   }
   measure(f, s);
+  for (uint32_t i = 0; i < f->n_shell; i++) is_internal &= !s[i].has_other;
   for (size_t t = 0; t < n; t++) {
     const struct shell *at = s + f->shell[t];
 

@@ -47,7 +47,8 @@ struct vg_trailing {
  *                    are ignored
  * @param is_body     [n_patch] 1: the patch belongs to the body; 0: farfield
  *                    or symmetry plane
- * @param is_internal 1: the fluid is inside of all shells
+ * @param is_internal 1: the fluid is inside of all shells, if all patches
+ * belong to the body
  * @param flow        direction of the stream, unit vector
  * @param out         empty; the caller releases it with vg_trailing_release
  *

@@ -98,13 +98,14 @@ static const struct {
     "{'anyOf':["
     "{'required':['size'],'properties':{'size':" POSITIVE "}},"
     "{'required':['lead'],'properties':{'lead':" POSITIVE "}},"
+    "{'required':['trail'],'properties':{'trail':" POSITIVE "}},"
     "{'required':['across'],'properties':{'across':" POSITIVE "}},"
     "{'required':['stretch'],'properties':{'stretch':" POSITIVE "}}]}" },
-  { "surface",
-    "{'if':{'required':['adjacent'],"
-    "'properties':{'adjacent':{'type':['integer','string']}}},"
-    "'then':{'properties':{'lead':{'const':0},'across':{'const':0}}},"
-    "'else':{'properties':{'stretch':{'const':0}}}}" },
+  { "surface", "{'if':{'required':['adjacent'],"
+               "'properties':{'adjacent':{'type':['integer','string']}}},"
+               "'then':{'properties':{'lead':{'const':0},'trail':{'const':0},"
+               "'across':{'const':0}}},"
+               "'else':{'properties':{'stretch':{'const':0}}}}" },
   { "", "{'not':{'required':['settings','farfield'],'properties':{"
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'internal'}}},"

@@ -61,7 +61,32 @@ refuses "patch  alpha" "*  0,x" "is not a list of 1 to 16 angles"
 refuses "patch  alpha" "*  61" "is not a list of 1 to 16 angles"
 refuses "patch  stream  up" "*  -x  x" "name the same axis, x"
 
-# A ball has none; and which way is up is not clear.
+# Edges at the trailing edge of a remeshed surface: 2 % of the local chord, which
+# is 1 at the root and 0.4 at the tip, 2.5 from it. The edge is at x = 1 + 0.26 y.
+sed '/^wakes$/,$d; /^sources$/,$d' w/wing-sharp.deck >w/s.deck
+printf 'surface\npatch  trail\nwing   0.02\n' >>w/s.deck
+vanguard mesh -q -p w/wing-sharp --deck w/s.deck --layers no \
+  --remesh-surface yes --write ugrid --out trail
+exits 0
+python3 - trail/wing-sharp.ugrid <<'PY' || fail "edges at the trailing edge"
+import sys
+words = open(sys.argv[1]).read().split()
+n = int(words[0])
+x = [tuple(map(float, words[7 + 3 * i:10 + 3 * i])) for i in range(n)]
+edge = sorted(p[1] for p in x
+              if abs(p[0] - 1 - 0.26 * abs(p[1])) < 1e-6 and abs(p[2]) < 1e-6)
+steps = [(b - a) / (1 - 0.24 * abs(a + b) / 2) for a, b in zip(edge, edge[1:])]
+assert len(steps) > 50, len(steps)
+assert 0.012 < sum(steps) / len(steps) < 0.022, sum(steps) / len(steps)
+assert max(steps) < 0.032, max(steps)
+PY
+sed -i 's/^wing   0.02/farfield 0.02/' w/s.deck
+vanguard mesh -q -p w/wing-sharp --deck w/s.deck --layers no \
+  --remesh-surface yes --out trail
+exits 1
+says err "patch farfield has no trailing edge for the stream along x"
+
+# A ball has none.
 vanguard demo sphere --cells 20000 --out s
 exits 0
 vanguard mesh -q -p s/sphere --wakes auto --out s
