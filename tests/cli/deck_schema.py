@@ -73,6 +73,13 @@ def corners(deck):
                if f.get(k + "lo") is not None and f.get(k + "hi") is not None)
 
 
+def wakes(deck):
+    return all(r.get("size", 0.02) <= min(r.get("length", 2),
+                                          2 * r.get("height", 0.05))
+               and r.get("up", "auto") != r.get("stream", "x").lstrip("-")
+               for r in deck.get("wakes", ()))
+
+
 def patches(deck):
     for table in ("patches", "layers"):
         ids = [r["id"] for r in deck.get(table, ())
@@ -97,7 +104,8 @@ def bytes_of(value, schema):
 
 
 CONDITIONS = {"ranges": ranges, "sizes": sizes, "first-height": first_height,
-              "corners": corners, "patches": patches, "bytes": None}
+              "corners": corners, "wakes": wakes, "patches": patches,
+              "bytes": None}
 
 
 def list_names(deck):

@@ -144,7 +144,20 @@ static void everything_survives_a_round_trip(void **state)
     2,   0.125,         0,    { 98, 99.9, 70, NAN, 8 },
     ""
   };
-  struct vg_surface_row surface = { VG_BC_NONE, 4, 0.25, 0, 0, 2, "tail*", "" };
+  const struct vg_wake_row wake = { .patch = VG_BC_NONE,
+                                    .length = 3,
+                                    .size = 0.015625,
+                                    .height = 0.0625,
+                                    .growth = 1.03125,
+                                    .chord = 1.5,
+                                    .stream = VG_STREAM_MINUS_Y,
+                                    .up = VG_UP_X,
+                                    .patch_name = "wing *",
+                                    .alpha = "0, 2.5,-4",
+                                    .beta = "1" };
+  struct vg_surface_row surface = {
+    VG_BC_NONE, 4, 0.25, 0, 0, 0, 2, "tail*", ""
+  };
   struct vg_sweep_row sweep = { "1,2",         "1:4:x2", "",
                                 "20000,50000", "1:3",    "advancing,octree",
                                 "4,16",        3 };
@@ -198,11 +211,12 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   surface.adjacent = 8;
-  surface.lead = surface.across = 0;
+  surface.lead = surface.trail = surface.across = 0;
   surface.stretch = 12.5;
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_MACHCONE; kind++)
     add_source(&s, kind);
+  vg_settings_add(&s, VG_TABLE_WAKES, &wake, NULL);
   vg_settings_add(&s, VG_TABLE_SWEEP, &sweep, NULL);
   vg_settings_add(&s, VG_TABLE_ADAPT, &adapt, NULL);
   round_trip(&s, VG_DECK_ALL);

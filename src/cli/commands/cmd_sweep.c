@@ -24,7 +24,8 @@ enum {
   KEY_PROGRAM,
   KEY_DECOMPOSE,
   KEY_PARTS,
-  KEY_FAMILY
+  KEY_FAMILY,
+  KEY_PLANNED
 };
 
 /* Lists that are given by an option or by the deck. */
@@ -68,6 +69,15 @@ static void ways(const char *text, struct vg_sweep_options *o,
     argp_error(state, "%s", err.text);
 }
 
+static void family(const char *text, struct vg_sweep_options *o,
+                   const struct argp_state *state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_sweep_take_family("--family", text, o, &err) < 0)
+    argp_error(state, "%s", err.text);
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct vg_sweep_options *o = state->input;
@@ -81,7 +91,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_LEAF_CELLS: range(LEAF_CELLS, arg, o, state); return 0;
   case KEY_PARTS: range(PARTS, arg, o, state); return 0;
   case KEY_DECOMPOSE: ways(arg, o, state); return 0;
-  case KEY_FAMILY: range(FAMILY, arg, o, state); return 0;
+  case KEY_FAMILY: family(arg, o, state); return 0;
+  case KEY_PLANNED: o->levels_planned = arg; return 0;
   case 'n': range(RANKS, arg, o, state); return 0;
   case 't': range(THREADS, arg, o, state); return 0;
   case KEY_REPEAT:
@@ -120,6 +131,7 @@ static vg_status take_list(const char *deck, int k, const char *text,
 
   if (!*text) return VG_OK;
   snprintf(what, sizeof what, "%.300s: sweep: %s", deck, lists[k].column);
+  if (k == FAMILY) return vg_sweep_take_family(what, text, o, err);
   return vg_range_parse(what, text, lists[k].lo, lists[k].hi, list_of(o, k),
                         err);
 }
@@ -162,12 +174,21 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   if (!deck && vg_input_find(o->project, NULL, &p.read.files, NULL) >= 0)
     deck = p.read.files.deck;
   if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
+  if (st >= 0 && vg_settings_unit(&p.asked))
+    vg_settings_convert(&p.asked, vg_settings_unit(&p.asked));
   o->scale = p.asked.scale;
+  o->reynolds = p.asked.layer.reynolds;
+  o->length = p.asked.layer.length;
+  o->sets_farfield = p.asked.farfield.kind != VG_DOMAIN_NONE &&
+                     p.asked.farfield.kind != VG_DOMAIN_MACH;
   if (st >= 0 && p.asked.n_sweep) st = take_row(deck, &p.asked.sweep, o, err);
   if (st >= 0 && !o->ranks.n)
     st = vg_range_parse("--ranks", "1", 1, 1, &o->ranks, err);
   if (st >= 0 && !o->threads.n)
     st = vg_range_parse("--threads", "1", 1, 1, &o->threads, err);
+  if (st >= 0 && o->levels_planned)
+    st = vg_sweep_take_planned(o->levels_planned, o, err);
+  if (o->rule != VG_FAMILY_PLAIN) o->keep = 1;
   if (!o->repeat) o->repeat = 1;
   vg_problem_release(&p);
   return st;
@@ -316,6 +337,7 @@ static int run(struct vg_sweep_options *o)
     for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i], width);
     if (o->n_way || o->subdomains.n) print_parts(&s, width);
     vg_sweep_family_text(stdout, &s);
+    vg_sweep_named_text(stdout, &s);
   }
   status = conclude(&s);
   if (ran < 0) status = vg_cli_fail(&why);
@@ -354,7 +376,12 @@ static const struct argp_option options[] = {
     "Levels of a grid family, as in 1:3: "
     "all edge lengths are multiplied by 2/(level + 1), and layers follow the "
     "rule of the AIAA Drag Prediction Workshops (--scale, --scale-layers "
-    "workshop)",
+    "workshop). dpw:1-6 and hlpw:A-F: with y+, growth, farfield and files of "
+    "these workshops and their form of grid metrics",
+    2 },
+  { "planned", KEY_PLANNED, "LEVELS", 0,
+    "Levels of such a workshop's family that are planned rather than meshed, "
+    "as in E,F",
     2 },
   { "repeat", KEY_REPEAT, "K", 0,
     "Number of runs of each case [default "
@@ -412,5 +439,6 @@ int vg_cmd_sweep(int argc, char **argv)
   vg_cli_parse(&argp, argc, argv, &o);
   status = run(&o);
   for (int k = 0; k < N_LIST; k++) vg_range_release(list_of(&o, k));
+  vg_range_release(&o.planned);
   return status;
 }

@@ -13,6 +13,18 @@
 #include "partition/advance/ways.h"
 #include "run/common/ranges.h"
 
+/* The law of a grid family: levels with factors 2 / (L + 1), or the figures of
+ * a workshop. */
+enum vg_family_rule {
+  VG_FAMILY_PLAIN,
+  VG_FAMILY_DPW,
+  VG_FAMILY_HLPW,
+  VG_FAMILY_N
+};
+
+/* Farfield of the workshops' families, in reference lengths. */
+#define VG_FAMILY_FARFIELD 1000
+
 struct vg_sweep_options {
   const char *project, *dir;
   const char *deck;     /* NULL: PROJECT.deck if it exists */
@@ -23,6 +35,12 @@ struct vg_sweep_options {
   int n_way, way[VG_DECOMPOSITIONS]; /* [n_way] enum vg_decomposition_method */
   struct vg_range_list family; /* levels of a grid family; empty: no family */
   double scale;                /* scale of the first level */
+  enum vg_family_rule rule;
+  const char *levels_planned;   /* as given; NULL: none */
+  struct vg_range_list planned; /* levels that are planned, not meshed */
+  double reynolds, length;      /* of the deck, for a workshop's family */
+  int sets_farfield;            /* 1: the deck does not exclude a farfield made
+                                   by the program */
   int repeat, keep, json, quiet;
   int n_extra;
   char **extra; /* [n_extra] for vanguard mesh */
@@ -38,12 +56,34 @@ enum vg_member_figure {
   VG_MEMBER_N
 };
 
+/* Figures of a mesh in the form of the workshops; NAN: unknown. */
+enum vg_sweep_figure {
+  VG_FIGURE_NODES,
+  VG_FIGURE_CELLS,
+  VG_FIGURE_TETRAHEDRA,
+  VG_FIGURE_PYRAMIDS,
+  VG_FIGURE_PRISMS,
+  VG_FIGURE_HEXAHEDRA,
+  VG_FIGURE_BOUNDARY_NODES,
+  VG_FIGURE_BOUNDARY_TRIANGLES,
+  VG_FIGURE_BOUNDARY_QUADS,
+  VG_FIGURE_LAYER_CELLS,
+  VG_FIGURE_FIRST,
+  VG_FIGURE_Y_PLUS,
+  VG_FIGURE_GROWTH,
+  VG_FIGURE_FULL,
+  VG_FIGURE_FARFIELD, /* half of the domain's extent, in reference lengths */
+  VG_FIGURE_N
+};
+
 struct vg_sweep_case {
   int64_t bisections, leaf_cells, subdomains; /* -1: not given */
   int way;        /* enum vg_decomposition_method; -1: not given */
   int64_t family; /* level, from 1; 0: no family */
   double member[VG_MEMBER_N];
   int is_plane; /* 1: a mesh in two dimensions */
+  double figure[VG_FIGURE_N];
+  int is_planned; /* 1: only vanguard plan is run */
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;
@@ -129,12 +169,54 @@ int vg_sweep_differ(const struct vg_sweep *s, size_t *n_compared,
                     const struct vg_sweep_case **a,
                     const struct vg_sweep_case **b, char *file);
 
-/** Scale of a level of a grid family relative to the first level:
- * 2 / (level + 1), as in the AIAA Drag Prediction Workshops. */
-double vg_sweep_scale(int64_t level);
+/** Take the levels of a family: numbers such as 1:3, or dpw:1-6 and hlpw:A-F
+ * with the laws of a workshop. VG_ERR_INPUT. what: for messages. */
+vg_status vg_sweep_take_family(const char *what, const char *text,
+                               struct vg_sweep_options *o,
+                               struct vg_error *err);
+
+/** Take the levels that are planned rather than meshed, after the family.
+ * VG_ERR_INPUT without a workshop's family, and for levels outside of it. */
+vg_status vg_sweep_take_planned(const char *text, struct vg_sweep_options *o,
+                                struct vg_error *err);
+
+int vg_sweep_is_in(const struct vg_range_list *list, int64_t v);
+
+/** VG_ERR_INPUT if the deck lacks what a workshop's family needs. */
+vg_status vg_sweep_check_named(const struct vg_sweep_options *o,
+                               struct vg_error *err);
+
+/** Scale of a level of a grid family relative to the first level. */
+double vg_sweep_scale(const struct vg_sweep_options *o, int64_t level);
+
+/** Name of a level, such as f2, dpw2 or hlpwB. */
+void vg_sweep_level_name(const struct vg_sweep_options *o, int64_t level,
+                         char name[24]);
+
+/** Add the options of a level of a workshop's family. */
+struct vg_words;
+vg_status vg_sweep_add_named(struct vg_words *w,
+                             const struct vg_sweep_options *o, int64_t level,
+                             struct vg_error *err);
+
+/** Read the figures of a case from its report, or from its forecast. */
+struct json_t;
+void vg_sweep_figures(const struct json_t *report,
+                      const struct vg_sweep_options *o,
+                      struct vg_sweep_case *c);
+void vg_sweep_estimates(const struct json_t *plan, struct vg_sweep_case *c);
+
+/** Print the table of requested and reached figures of a workshop's family;
+ * write it as metrics.html, and all figures as metrics.csv in o->dir. No effect
+ * on other families. */
+void vg_sweep_named_text(FILE *to, const struct vg_sweep *s);
+vg_status vg_sweep_named_write(const struct vg_sweep *s, struct vg_error *err);
+
+/** The previous member of the family: the last finished case before i of
+ * another level with the same parameters otherwise, or NULL. */
+const struct vg_sweep_case *vg_sweep_before(const struct vg_sweep *s, size_t i);
 
 /** Read the quantities of a family member from its report. */
-struct json_t;
 void vg_sweep_member(const struct json_t *report, struct vg_sweep_case *c);
 
 /** Print the members of the family, each with the ratios of its quantities to

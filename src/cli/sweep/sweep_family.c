@@ -12,17 +12,14 @@ static const char *const names[VG_MEMBER_N] = { "cells", "surface_edge",
                                                 "field_edge", "first_height",
                                                 "layers" };
 
-double vg_sweep_scale(int64_t level)
-{
-  return 2 / ((double)level + 1);
-}
-
 /* Factor of quantity k from one member to another: that of cells is the cube of
  * the refinement ratio of edges, or its square in two dimensions. */
-static double rule(int k, const struct vg_sweep_case *from,
+static double rule(const struct vg_sweep_options *o, int k,
+                   const struct vg_sweep_case *from,
                    const struct vg_sweep_case *to)
 {
-  double finer = vg_sweep_scale(from->family) / vg_sweep_scale(to->family);
+  double finer = vg_sweep_scale(o, from->family) /
+                 vg_sweep_scale(o, to->family);
 
   if (k == VG_MEMBER_CELLS) return finer * finer * (to->is_plane ? 1 : finer);
   return k == VG_MEMBER_LEVELS ? finer : 1 / finer;
@@ -51,9 +48,7 @@ void vg_sweep_member(const json_t *report, struct vg_sweep_case *c)
   c->member[VG_MEMBER_LEVELS] = number(layers, "all", "levels", "mean");
 }
 
-/* The previous member of the family: the last case before i of another level
- * with the same parameters otherwise, or NULL. */
-static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
+const struct vg_sweep_case *vg_sweep_before(const struct vg_sweep *s, size_t i)
 {
   const struct vg_sweep_case *c = &s->item[i], *p;
 
@@ -70,10 +65,12 @@ static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
 }
 
 /* Print a member and, if there is a previous one, the ratios to it. */
-static void text_of(FILE *to, const struct vg_sweep_case *c,
+static void text_of(FILE *to, const struct vg_sweep_options *o,
+                    const struct vg_sweep_case *c,
                     const struct vg_sweep_case *p)
 {
-  fprintf(to, "%-6lld %6.4f", (long long)c->family, vg_sweep_scale(c->family));
+  fprintf(to, "%-6lld %6.4f", (long long)c->family,
+          vg_sweep_scale(o, c->family));
   for (int k = 0; k < VG_MEMBER_N; k++)
     fprintf(to, isfinite(c->member[k]) ? " %12.6g" : "            -",
             c->member[k]);
@@ -86,7 +83,8 @@ static void text_of(FILE *to, const struct vg_sweep_case *c,
     fprintf(to, isfinite(r) ? " %12.4f" : "            -", r);
   }
   fprintf(to, "\n        rule");
-  for (int k = 0; k < VG_MEMBER_N; k++) fprintf(to, " %12.4f", rule(k, p, c));
+  for (int k = 0; k < VG_MEMBER_N; k++)
+    fprintf(to, " %12.4f", rule(o, k, p, c));
   fprintf(to, "\n");
 }
 
@@ -96,7 +94,8 @@ void vg_sweep_family_text(FILE *to, const struct vg_sweep *s)
   fprintf(to, "\n%-6s %6s %12s %12s %12s %12s %12s\n", "level", "scale",
           "cells", "surface edge", "field edge", "first height", "layers");
   for (size_t i = 0; i < s->n; i++)
-    if (s->item[i].is_done) text_of(to, &s->item[i], before(s, i));
+    if (s->item[i].is_done)
+      text_of(to, s->o, &s->item[i], vg_sweep_before(s, i));
 }
 
 static void put_real(struct vg_output *out, double v)
@@ -123,15 +122,15 @@ vg_status vg_sweep_family_write(const struct vg_sweep *s, struct vg_error *err)
                      names[k]);
   vg_output_text(&out, "\n");
   for (size_t i = 0; i < s->n; i++) {
-    const struct vg_sweep_case *c = &s->item[i], *p = before(s, i);
+    const struct vg_sweep_case *c = &s->item[i], *p = vg_sweep_before(s, i);
 
     if (!c->is_done) continue;
     vg_output_format(&out, "%s,%lld", c->name, (long long)c->family);
-    put_real(&out, vg_sweep_scale(c->family));
+    put_real(&out, vg_sweep_scale(s->o, c->family));
     for (int k = 0; k < VG_MEMBER_N; k++) {
       put_real(&out, c->member[k]);
       put_real(&out, p ? c->member[k] / p->member[k] : NAN);
-      put_real(&out, p ? rule(k, p, c) : NAN);
+      put_real(&out, p ? rule(s->o, k, p, c) : NAN);
     }
     vg_output_text(&out, "\n");
   }

@@ -136,6 +136,7 @@ static void read_report(const struct vg_sweep_options *o,
   c->peak_memory = number_at(root, "peak_memory_bytes");
   take_parts(root, &c->parts_made);
   if (c->family) vg_sweep_member(root, c);
+  if (o->rule != VG_FAMILY_PLAIN) vg_sweep_figures(root, o, c);
   if (c->is_done) {
     take_digests(files, c);
     if (!o->keep) remove_meshes(files, c->dir);
@@ -157,10 +158,27 @@ static double critical_of(const struct vg_timeline *t)
   return vg_model_replay(&t->spans, &m, &f, NULL, NULL) < 0 ? NAN : f.critical;
 }
 
+static void read_plan(struct vg_sweep_case *c)
+{
+  char *path = find_file(c->dir, "plan.json");
+  json_t *root = path ? json_load_file(path, 0, NULL) : NULL;
+
+  vg_sweep_estimates(root, c);
+  c->member[VG_MEMBER_CELLS] = c->figure[VG_FIGURE_CELLS];
+  json_decref(root);
+  free(path);
+}
+
 void vg_sweep_collect(const struct vg_sweep_options *o, struct vg_sweep_case *c)
 {
-  char *path = find_file(c->dir, ".timeline.json");
+  char *path;
   struct vg_error err = VG_ERROR_INIT;
+
+  if (c->is_planned) {
+    read_plan(c);
+    return;
+  }
+  path = find_file(c->dir, ".timeline.json");
 
   read_report(o, c);
   if (path && c->is_done) {

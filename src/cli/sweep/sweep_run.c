@@ -62,8 +62,11 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
   size_t at = 0;
 
   *to = *c;
-  if (c->family)
-    at = (size_t)snprintf(part, sizeof part, "f%lld-", (long long)c->family);
+  if (c->family) {
+    vg_sweep_level_name(s->o, c->family, part);
+    strcat(part, "-");
+    at = strlen(part);
+  }
   if (c->bisections >= 0)
     snprintf(part + at, sizeof part - at, "L%lld-", (long long)c->bisections);
   if (c->leaf_cells >= 0)
@@ -78,6 +81,8 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
   to->angle_min = to->peak_memory = to->critical = NAN;
   to->parts_made = (struct vg_sweep_parts){ NAN, NAN, NAN, NAN, NAN, NAN };
   for (int k = 0; k < VG_MEMBER_N; k++) to->member[k] = NAN;
+  for (int k = 0; k < VG_FIGURE_N; k++) to->figure[k] = NAN;
+  to->is_planned = vg_sweep_is_in(&s->o->planned, c->family);
   if (asprintf(&to->dir, "%s/%s", s->o->dir, to->name) < 0) {
     to->dir = NULL;
     return vg_fail_memory(err, "a path");
@@ -126,6 +131,7 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   vg_status st;
 
   VG_TRY(check_extra(o, err));
+  VG_TRY(vg_sweep_check_named(o, err));
   s->o = o;
   if (!n_mesh) n_mesh = 1;
   n = n_mesh * n_member;
@@ -170,11 +176,52 @@ static vg_status add_member(struct vg_words *w,
   char text[40];
   vg_status st;
 
-  snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(c->family));
+  if (o->rule != VG_FAMILY_PLAIN)
+    return vg_sweep_add_named(w, o, c->family, err);
+  snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(o, c->family));
   VG_TRY(vg_words_add(w, "--scale", err));
   VG_TRY(vg_words_add(w, text, err));
   VG_TRY(vg_words_add(w, "--scale-layers", err));
   st = vg_words_add(w, "workshop", err);
+done:
+  return st;
+}
+
+/* The program and the project. A forecast runs on one rank. */
+static vg_status begin_line(const struct vg_sweep_options *o,
+                            const struct vg_sweep_case *c, struct vg_words *w,
+                            struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!c->is_planned)
+    VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
+  VG_TRY(
+    vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(), err));
+  VG_TRY(vg_words_add(w, c->is_planned ? "plan" : "mesh", err));
+  VG_TRY(vg_words_add(w, "-p", err));
+  VG_TRY(vg_words_add(w, o->project, err));
+  if (o->deck) {
+    VG_TRY(vg_words_add(w, "--deck", err));
+    VG_TRY(vg_words_add(w, o->deck, err));
+  }
+done:
+  return st;
+}
+
+/* Where the results go. */
+static vg_status add_outputs(const struct vg_sweep_case *c, struct vg_words *w,
+                             struct vg_error *err)
+{
+  vg_status st;
+
+  if (c->is_planned) {
+    VG_TRY(vg_words_add(w, "-q", err));
+    return vg_words_add(w, "--json", err);
+  }
+  VG_TRY(vg_words_add(w, "--timeline", err));
+  VG_TRY(vg_words_add(w, "-o", err));
+  st = vg_words_add(w, c->dir, err);
 done:
   return st;
 }
@@ -185,16 +232,7 @@ static vg_status command_line(const struct vg_sweep_options *o,
 {
   vg_status st;
 
-  VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
-  VG_TRY(
-    vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(), err));
-  VG_TRY(vg_words_add(w, "mesh", err));
-  VG_TRY(vg_words_add(w, "-p", err));
-  VG_TRY(vg_words_add(w, o->project, err));
-  if (o->deck) {
-    VG_TRY(vg_words_add(w, "--deck", err));
-    VG_TRY(vg_words_add(w, o->deck, err));
-  }
+  VG_TRY(begin_line(o, c, w, err));
   VG_TRY(vg_words_pair(w, "--threads", c->threads, err));
   if (c->bisections >= 0)
     VG_TRY(vg_words_pair(w, "--bisections", c->bisections, err));
@@ -207,9 +245,7 @@ static vg_status command_line(const struct vg_sweep_options *o,
   if (c->subdomains >= 0)
     VG_TRY(vg_words_pair(w, "--subdomains", c->subdomains, err));
   if (c->family) VG_TRY(add_member(w, o, c, err));
-  VG_TRY(vg_words_add(w, "--timeline", err));
-  VG_TRY(vg_words_add(w, "-o", err));
-  VG_TRY(vg_words_add(w, c->dir, err));
+  VG_TRY(add_outputs(c, w, err));
   for (int i = 0; i < o->n_extra; i++)
     VG_TRY(vg_words_add(w, o->extra[i], err));
 done:
@@ -234,27 +270,33 @@ static void remove_stale(const char *dir)
 
   while (d && (e = readdir(d)))
     if (ends_with(e->d_name, ".report.json") ||
+        !strcmp(e->d_name, "plan.json") ||
         ends_with(e->d_name, ".timeline.json"))
       unlinkat(dirfd(d), e->d_name, 0);
   if (d) closedir(d);
+}
+
+static vg_status path_in(const struct vg_sweep_case *c, const char *name,
+                         char **path, struct vg_error *err)
+{
+  if (asprintf(path, "%s/%s", c->dir, name) >= 0) return VG_OK;
+  *path = NULL;
+  return vg_fail_memory(err, "a path");
 }
 
 vg_status vg_sweep_run(const struct vg_sweep_options *o,
                        struct vg_sweep_case *c, struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
-  char *path = NULL;
+  char *path = NULL, *plan = NULL;
   vg_status st;
 
   VG_TRY(vg_make_folder(c->dir, err));
   remove_stale(c->dir);
   VG_TRY(command_line(o, c, &w, err));
-  if (asprintf(&path, "%s/run.log", c->dir) < 0) {
-    path = NULL;
-    st = vg_fail_memory(err, "a path");
-    goto done;
-  }
-  VG_TRY(vg_words_run(&w, NULL, path, NULL, &c->exit_status, &c->wall, err));
+  VG_TRY(path_in(c, "run.log", &path, err));
+  if (c->is_planned) VG_TRY(path_in(c, "plan.json", &plan, err));
+  VG_TRY(vg_words_run(&w, NULL, path, plan, &c->exit_status, &c->wall, err));
   c->is_run = 1;
   /* If a limit on the layers is not met, the mesh is complete nevertheless. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
@@ -265,5 +307,6 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
 done:
   vg_words_release(&w);
   free(path);
+  free(plan);
   return st;
 }

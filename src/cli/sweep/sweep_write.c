@@ -248,6 +248,7 @@ vg_status vg_sweep_write(const struct vg_sweep *s, struct vg_error *err)
   vg_status st = write_csv(s, err);
 
   if (st >= 0) st = vg_sweep_family_write(s, err);
+  if (st >= 0) st = vg_sweep_named_write(s, err);
 
   return st < 0 ? st : write_json(s, err);
 }

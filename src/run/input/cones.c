@@ -22,8 +22,7 @@ struct body {
   uint8_t *is_body;          /* [n_patch] owned. */
 };
 
-/* Farfield and symmetry planes do not belong to the body. */
-static int is_outer(const struct vg_patch *p)
+int vg_patch_is_outer(const struct vg_patch *p)
 {
   return p->bc == 0 || p->bc == 1 || p->bc == 2 || p->bc == 3 ||
          (p->bc_fun3d >= 5000 && p->bc_fun3d <= 5050) ||
@@ -114,7 +113,7 @@ static vg_status find_body(const struct vg_read *r, struct body *b,
   b->is_body = vg_calloc(m->n_patch, 1);
   if (!b->is_body) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < m->n_patch; i++)
-    b->is_body[i] = !is_outer(&m->patch[i]);
+    b->is_body[i] = !vg_patch_is_outer(&m->patch[i]);
   measure(m, b);
   if (!(b->length > 0))
     return vg_fail(err, VG_ERR_INPUT,

@@ -14,4 +14,8 @@
  * VG_ERR_INPUT, naming the source, if a value is given in neither place. */
 vg_status vg_read_place_cones(struct vg_read *r, struct vg_error *err);
 
+/** Does the condition of a patch make it a farfield or symmetry plane, which
+ * does not belong to the body? */
+int vg_patch_is_outer(const struct vg_patch *p);
+
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "run/input/cones.h"
+#include "run/input/wakes.h"
 #include "run/input/input.h"
 
 #include <math.h>
@@ -93,6 +94,7 @@ static void release_read(struct vg_read *r)
   vg_mesh_release(&r->surface);
   vg_cad_model_release(&r->model);
   free(r->heights.item);
+  vg_read_wakes_release(&r->wakes);
 }
 
 void vg_problem_forget_sizes(struct vg_problem *p)
@@ -729,7 +731,8 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   VG_TRY(apply_conditions(r, err));
   VG_TRY(apply_patch_table(r, err));
   vg_note_symmetry(r->notes, &r->surface);
-  st = vg_read_place_cones(r, err);
+  VG_TRY(vg_read_place_cones(r, err));
+  st = vg_read_place_wakes(r, err);
 done:
   return st;
 }
@@ -766,7 +769,8 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
   if (!r->heights.n) r->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(r, err));
   vg_note_symmetry(r->notes, &r->surface);
-  st = vg_read_place_cones(r, err);
+  VG_TRY(vg_read_place_cones(r, err));
+  st = vg_read_place_wakes(r, err);
 done:
   return st;
 }

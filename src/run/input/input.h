@@ -14,6 +14,7 @@
 #include "core/sizing/sizing_map.h"
 #include "core/sizing/sizing_mesh.h"
 #include "core/surface/surface_check.h"
+#include "core/wake/wake.h"
 #include "io/cad/cad.h"
 #include "run/common/progress.h"
 #include "run/settings/resolved.h"
@@ -83,6 +84,21 @@ struct vg_remeshing {
                        is not closed. */
 };
 
+/* Distances behind a trailing edge, in chords, at which cells across wakes are
+ * counted. */
+enum { VG_WAKE_STATIONS = 3 };
+#define VG_WAKE_STATION_CHORDS                                                 \
+  {                                                                            \
+    0.5, 1, 2                                                                  \
+  }
+
+/** The wakes of the table and of the setting `wakes`. */
+struct vg_read_wakes {
+  size_t n, n_probe, cap_probe;
+  struct vg_wake_row *row;     /* [n] owned */
+  struct vg_wake_probe *probe; /* [n_probe] owned; by wakes, then by stations */
+};
+
 /* Areas of patches by their numbers. */
 struct vg_patch_areas {
   size_t n;
@@ -111,6 +127,7 @@ struct vg_read {
   struct vg_cad_model model; /* Model of a CAD file whose surface is remeshed,
                                 on rank 0; empty otherwise. */
   struct vg_point_heights heights;
+  struct vg_read_wakes wakes; /* Their sources are in `settings`. */
   enum vg_flow_side side; /* Side of the surface to which triangles point in its
                              file format. */
   int unit;               /* Unit of the mesh, enum vg_cad_unit; FILE: not

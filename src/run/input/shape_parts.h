@@ -184,6 +184,11 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
 vg_status vg_boundary_unite(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 
+/* run/input/surface.c -----------------------------------------------------*/
+
+/** Splits each quadrilateral into two triangles. VG_ERR_MEMORY. */
+vg_status vg_split_quads(struct vg_mesh *m, struct vg_error *err);
+
 /* run/input/wrap_surface.c ------------------------------------------------*/
 
 /** Wraps the surface with the size of the setting `wrap`; notes describe the

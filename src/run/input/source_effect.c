@@ -134,16 +134,31 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
           n > 1 ? "them" : "it");
 }
 
+/* Of consecutive sources of one group, as those of a wake, only the first is
+ * described. */
+static int is_described(const struct vg_effects *h, size_t i,
+                        const struct vg_source *source)
+{
+  const char *group = source[h->item[i].source].group;
+
+  return !i || !*group || strcmp(source[h->item[i - 1].source].group, group);
+}
+
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
                      const struct vg_settings *s, struct vg_notes *notes)
 {
-  for (size_t i = 0; i < h->n && i < VG_SHOWN_LIMITED; i++)
+  size_t shown = 0;
+
+  for (size_t i = 0; i < h->n && shown < VG_SHOWN_LIMITED; i++) {
+    if (!is_described(h, i, s->source)) continue;
     note_limited(h->item + i, front, s->source + h->item[i].source, notes);
-  if (h->n > VG_SHOWN_LIMITED)
+    shown++;
+  }
+  if (h->n > shown)
     vg_note(notes,
             "%zu further sources are limited by the surface; the JSON report "
             "lists them all",
-            h->n - VG_SHOWN_LIMITED);
+            h->n - shown);
   for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
     note_unmet(h->unmet + i, s->source + h->unmet[i].source, notes);
   if (h->n_unmet > VG_SHOWN_LIMITED)

@@ -15,7 +15,8 @@ vg_status vg_boundary_effects(const struct vg_boundary *b,
                               struct vg_effects *out, struct vg_error *err);
 
 /** Adds a note for each limited and each unresolved source, the first
- * VG_SHOWN_LIMITED of each kind, and one note for all sources outside the
+ * VG_SHOWN_LIMITED of each kind (of limited sources of one group only the
+ * first), and one note for all sources outside the
  * fluid. front: as for vg_effects_find; s: settings with the sources. */
 #define VG_SHOWN_LIMITED 10
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,

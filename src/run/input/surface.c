@@ -36,9 +36,7 @@ static int is_unset(const struct vg_patch *p)
   return p->bc == VG_BC_NONE && p->bc_fun3d == VG_BC_NONE;
 }
 
-/* The kernel accepts only triangles. */
-static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
-                             struct vg_error *err)
+vg_status vg_split_quads(struct vg_mesh *m, struct vg_error *err)
 {
   size_t n = m->n_tri + 2 * m->n_quad;
   uint32_t(*tri)[3], *patch;
@@ -57,16 +55,25 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
     patch[m->n_tri] = patch[m->n_tri + 1] = m->quad_patch[i];
     m->n_tri += 2;
   }
-  vg_note(notes,
-          "%zu quadrilaterals of the surface were split into "
-          "triangles",
-          m->n_quad);
   free(m->quad);
   free(m->quad_patch);
   m->quad = NULL;
   m->quad_patch = NULL;
   m->n_quad = 0;
   return VG_OK;
+}
+
+/* The kernel accepts only triangles. */
+static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
+                             struct vg_error *err)
+{
+  const size_t n = m->n_quad;
+  vg_status st = vg_split_quads(m, err);
+
+  if (st >= 0 && n)
+    vg_note(notes,
+            "%zu quadrilaterals of the surface were split into triangles", n);
+  return st;
 }
 
 /* Notes on triangles that the repair turned or removed, since the next check no

@@ -8,6 +8,8 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/wake/trailing.h"
+#include "run/input/cones.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
@@ -158,6 +160,54 @@ static void size_lead(const struct vg_mesh *m, size_t patch, double share,
     }
 }
 
+/* --- trailing edges ------------------------------------------------------ */
+
+/* Trailing edges of the surface for the stream along x. */
+static vg_status find_trailing(const struct vg_boundary *b,
+                               struct vg_trailing *t, struct vg_error *err)
+{
+  const double along_x[3] = { 1, 0, 0 };
+  const struct vg_mesh *m = &b->surface;
+  uint8_t *is_body = vg_alloc(m->n_patch, 1);
+  vg_status st;
+
+  if (!is_body) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++)
+    is_body[i] = !vg_patch_is_outer(&m->patch[i]);
+  st = vg_trailing_find(m, is_body, b->flow.kind == VG_FLOW_INTERNAL, along_x,
+                        t, err);
+  free(is_body);
+  return st;
+}
+
+/* Lower the sizes at the trailing edges of the patches with on[][0]. */
+static vg_status size_trail(const struct vg_boundary *b,
+                            const struct vg_surface_row *row,
+                            const uint8_t (*on)[2], double *cap,
+                            struct vg_error *err)
+{
+  struct vg_trailing t = VG_TRAILING_INIT;
+  char name[2 * VG_NAME_MAX + 4];
+  size_t n = 0;
+  vg_status st = find_trailing(b, &t, err);
+
+  for (size_t i = 0; i < t.n; i++) {
+    const struct vg_trailing_edge *e = &t.edge[i];
+
+    if (!on[e->patch[0]][0] && !on[e->patch[1]][0]) continue;
+    for (int k = 0; k < 2; k++) lower(cap, e->point[k], row->trail * e->chord);
+    n++;
+  }
+  vg_trailing_release(&t);
+  if (st < 0 || n) return st;
+  vg_param_format(&vg_surface_table.column[0], row, name, sizeof name);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "surface: patch %s has no trailing edge for the stream along "
+                 "x, which `trail` refers to; give the size of the curve "
+                 "between its patches instead (adjacent, size)",
+                 name);
+}
+
 /* --- rows of the table --------------------------------------------------- */
 
 static vg_status take_curve(const struct vg_mesh *m,
@@ -220,6 +270,8 @@ static vg_status take_row(const struct vg_boundary *b,
     if (!adjacent && mark[i]) take_patch(b, i, row, s);
   }
   if (adjacent) st = take_curve(m, row, on, s, err);
+  else if (row->trail > 0)
+    st = size_trail(b, row, (const uint8_t(*)[2])on, s->cap, err);
 done:
   return st;
 }

@@ -87,6 +87,24 @@ void vg_report_distances_text(FILE *to, const char *file,
 json_t *vg_report_distances_json(const char *file,
                                  const struct vg_remesh_distance d[2]);
 
+/** Cells across wake `wake` (index of a row) at a station, over all lines
+ * there. NAN: no line, or none that was measured. */
+struct vg_wake_count {
+  double chords; /* Distance behind the trailing edge. */
+  size_t n_line, n_measured;
+  double asked, mean, least;
+};
+struct vg_wake_count vg_report_wake_count(size_t n,
+                                          const struct vg_wake_probe *probe,
+                                          size_t wake, size_t station);
+
+/** Cells across all wakes; prints nothing without wakes. probe: [n] measured by
+ * vg_wake_measure. */
+void vg_report_wakes_text(FILE *to, const struct vg_read_wakes *w, size_t n,
+                          const struct vg_wake_probe *probe);
+json_t *vg_report_wakes_json(const struct vg_read_wakes *w, size_t n,
+                             const struct vg_wake_probe *probe);
+
 /** Validity and quality of a mesh, and the causes of flat cells if there are
  * any and they are classified; if `full`, also histograms and the worst cells.
  */

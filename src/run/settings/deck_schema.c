@@ -103,13 +103,14 @@ static const struct {
     "{'anyOf':["
     "{'required':['size'],'properties':{'size':" POSITIVE "}},"
     "{'required':['lead'],'properties':{'lead':" POSITIVE "}},"
+    "{'required':['trail'],'properties':{'trail':" POSITIVE "}},"
     "{'required':['across'],'properties':{'across':" POSITIVE "}},"
     "{'required':['stretch'],'properties':{'stretch':" POSITIVE "}}]}" },
-  { "surface",
-    "{'if':{'required':['adjacent'],"
-    "'properties':{'adjacent':{'type':['integer','string']}}},"
-    "'then':{'properties':{'lead':{'const':0},'across':{'const':0}}},"
-    "'else':{'properties':{'stretch':{'const':0}}}}" },
+  { "surface", "{'if':{'required':['adjacent'],"
+               "'properties':{'adjacent':{'type':['integer','string']}}},"
+               "'then':{'properties':{'lead':{'const':0},'trail':{'const':0},"
+               "'across':{'const':0}}},"
+               "'else':{'properties':{'stretch':{'const':0}}}}" },
   { "", "{'not':{'required':['settings','farfield'],'properties':{"
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'internal'}}},"
@@ -136,6 +137,9 @@ static const char *const further[][2] = {
     "height is `first` or, if y_plus, reynolds (Re) and reference_length (L) "
     "are above 0, 2 y_plus L / (Re sqrt(cf / 2)) for the skin friction "
     "coefficient cf of a flat plate at the trailing edge" },
+  { "wakes",
+    "wakes: size is at most length, and at most twice height; stream and up "
+    "name different axes" },
   { "corners", "farfield: each lower corner is below the upper one" },
   { "patches", "patches, layers: no two rows have the same number as id" },
   { "bytes",

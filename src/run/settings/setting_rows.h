@@ -50,6 +50,11 @@ VG_ROW(FLAG, plain, d3m_sources, "d3m_sources", 1,
   .topic = VG_TOPIC_SIZES,
   .use = VG_USE_D3M, .unit = "", .help = "Use the sources and ifact of the "
   ".d3m in addition to the sources given here")
+VG_ROW(WORD, plain, wakes, "wakes", 0,
+  .topic = VG_TOPIC_SIZES,
+  .words = wake_words, .unit = "", .help = "Refine the wakes of all trailing "
+  "edges, which are found by geometry; auto: with the defaults of the table "
+  "wakes, which also has other sizes, lengths and angles of attack")
 VG_TEXT_ROW(plain, sizes, VG_LIST_MAX, "sizes", "",
   .topic = VG_TOPIC_SIZES,
   .unit = "", .argument = "FILE", .help = "Target edge lengths at the points "

@@ -19,6 +19,7 @@
 #include "run/settings/lists.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
+#include "run/settings/wake_table.h"
 
 #define MACH_MAX 100   /* beyond all flows of continua */
 #define HUGE_SIZE 1e60 /* its cube is finite */
@@ -33,6 +34,7 @@ static const char *const half_words[] = { "auto", "no", "yes", "x",
 /* The axes 2 and 1. */
 static const char *const axis_words[] = { "z", "y", NULL };
 static const char *const region_words[] = { "one", "all", NULL };
+static const char *const wake_words[] = { "no", "auto", NULL };
 static const char *const answer_words[] = { "auto", "no", "yes", NULL };
 /* In the order of enum vg_cad_unit, of enum vg_cad_patches. */
 static const char *const unit_words[] = { "file", "mm",   "cm",   "m",
@@ -329,7 +331,8 @@ static const struct vg_param sweep_columns[] = {
     "every entry of subdomains, in addition to the cases of the other lists; "
     "\"\": as the setting"),
   LIST("subdomains", subdomains, "Numbers of subdomains; \"\": as the setting"),
-  LIST("family", family, "Levels of a grid family; \"\": none"),
+  LIST("family", family,
+       "Levels of a grid family, as in 1:3, dpw:1-6 or hlpw:A-F; \"\": none"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
     .unit = "times", .help = "Number of runs of each case; 0: one" },
 };
@@ -411,7 +414,8 @@ const struct vg_param *vg_settings_params(size_t *n)
 const struct vg_setting_table *vg_settings_table(enum vg_table_kind kind)
 {
   assert(kind < VG_TABLE_N);
-  return kind == VG_TABLE_SURFACE ? &vg_surface_table : &tables[kind];
+  if (kind == VG_TABLE_SURFACE) return &vg_surface_table;
+  return kind == VG_TABLE_WAKES ? &vg_wake_table : &tables[kind];
 }
 
 void vg_settings_row_default(enum vg_table_kind kind, void *row)
@@ -437,6 +441,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;
   case VG_TABLE_LAYERS: memcpy(row, &layer, sizeof layer); break;
   case VG_TABLE_SURFACE: memcpy(row, &surface, sizeof surface); break;
+  case VG_TABLE_WAKES: vg_wake_row_default(row); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
   case VG_TABLE_ADAPT: memcpy(row, &adapt, sizeof adapt); break;
@@ -473,6 +478,7 @@ void vg_settings_release(struct vg_settings *s)
   free(s->patch);
   free(s->layer_row);
   free(s->surface_row);
+  free(s->wake_row);
   memset(s, 0, sizeof *s);
 }
 
@@ -500,6 +506,11 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                          sizeof *s->surface_row);
     if (!refused)
       memcpy(&s->surface_row[s->n_surface++], row, sizeof *s->surface_row);
+    break;
+  case VG_TABLE_WAKES:
+    refused = vg_reserve(&s->wake_row, &s->cap_wake, s->n_wake + 1,
+                         sizeof *s->wake_row);
+    if (!refused) memcpy(&s->wake_row[s->n_wake++], row, sizeof *s->wake_row);
     break;
   case VG_TABLE_SOURCES:
     refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
@@ -533,6 +544,7 @@ const void *vg_settings_row(const struct vg_settings *s,
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
   if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
   if (kind == VG_TABLE_SURFACE) return &s->surface_row[i];
+  if (kind == VG_TABLE_WAKES) return &s->wake_row[i];
   return &s->source[i];
 }
 
@@ -544,6 +556,7 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   if (kind == VG_TABLE_ADAPT) return s->n_adapt;
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
   if (kind == VG_TABLE_SURFACE) return s->n_surface;
+  if (kind == VG_TABLE_WAKES) return s->n_wake;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 

@@ -61,10 +61,34 @@ struct vg_patch_row {
 struct vg_surface_row {
   int32_t patch, adjacent; /* the patch, and the other patch of the
                             curve; VG_BC_NONE: no curve */
-  double size, lead, across, stretch;
+  double size, lead, trail, across, stretch;
   /* Names or patterns instead of patch and adjacent; "": the numbers are used.
    */
   char patch_name[VG_NAME_MAX], adjacent_name[VG_NAME_MAX];
+};
+
+/** Axis that points up: of the two normal to the stream, the one along which
+ * the body is less extended, unless it is given. */
+enum vg_wake_up { VG_UP_AUTO, VG_UP_X, VG_UP_Y, VG_UP_Z };
+
+/** Axis along which the stream runs: axis VALUE / 2, backwards if odd. */
+enum vg_wake_stream {
+  VG_STREAM_X,
+  VG_STREAM_MINUS_X,
+  VG_STREAM_Y,
+  VG_STREAM_MINUS_Y,
+  VG_STREAM_Z,
+  VG_STREAM_MINUS_Z
+};
+
+/** A refined wake of trailing edges (core/wake/wake.h). */
+struct vg_wake_row {
+  int32_t patch; /* of its trailing edges */
+  double length, size, height, growth;
+  double chord;                 /* 0: the local chord */
+  int stream, up;               /* enum vg_wake_stream, enum vg_wake_up */
+  char patch_name[VG_NAME_MAX]; /* as in vg_surface_row */
+  char alpha[VG_LIST_MAX], beta[VG_LIST_MAX]; /* lists of angles in degrees */
 };
 
 /** A yes/no setting that the run may decide itself. */
@@ -161,11 +185,12 @@ struct vg_settings {
   struct vg_adapt_row adapt;
   size_t n_sweep, n_adapt; /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
-  size_t n_surface, cap_surface;
+  size_t n_surface, cap_surface, n_wake, cap_wake;
   struct vg_source *source;           /* [n_source] owned */
   struct vg_patch_row *patch;         /* [n_patch] owned */
   struct vg_layer_row *layer_row;     /* [n_layer] owned */
   struct vg_surface_row *surface_row; /* [n_surface] owned */
+  struct vg_wake_row *wake_row;       /* [n_wake] owned */
 };
 #define VG_SETTINGS_INIT                                                       \
   {                                                                            \
@@ -259,6 +284,7 @@ enum vg_table_kind {
   VG_TABLE_PATCHES,
   VG_TABLE_LAYERS,
   VG_TABLE_SURFACE,
+  VG_TABLE_WAKES,
   VG_TABLE_SOURCES,
   VG_TABLE_SWEEP,
   VG_TABLE_ADAPT,

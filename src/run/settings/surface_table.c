@@ -23,6 +23,10 @@ static const struct vg_param columns[] = {
     .help = "Edge length at the leading edge of the patch (its foremost points "
             "along x), over the local length of the patch along x; "
             "0: no limit" },
+  { "trail", AT(trail), .type = VG_PARAM_REAL, .hi = 1, .unit = "chords",
+    .help = "Edge length at the trailing edges of the patch, which are found "
+            "as for wakes with the stream along x, over their local chord; "
+            "0: no limit" },
   { "across", AT(across), .type = VG_PARAM_REAL, .hi = 1000, .unit = "edges",
     .help = "Number of edges across the patch where it is a narrow strip "
             "between two feature curves, such as a blunt trailing edge; "
@@ -55,15 +59,16 @@ static vg_status check_row(const struct vg_surface_row *r, size_t line,
 
   vg_param_format(&columns[0], r, one, sizeof one);
   vg_param_format(&columns[1], r, two, sizeof two);
-  if (!(r->size > 0 || r->lead > 0 || r->across > 0 || r->stretch > 0))
+  if (!(r->size > 0 || r->lead > 0 || r->trail > 0 || r->across > 0 ||
+        r->stretch > 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: line %zu, patch %s, has no "
-                   "request; give size, lead, across or stretch",
+                   "request; give size, lead, trail, across or stretch",
                    line, one);
-  if (adjacent && (r->lead > 0 || r->across > 0))
+  if (adjacent && (r->lead > 0 || r->trail > 0 || r->across > 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: only size and stretch apply to the curve between "
-                   "patches %s and %s; give lead and across "
+                   "patches %s and %s; give lead, trail and across "
                    "on a line without `adjacent`",
                    one, two);
   if (!adjacent && r->stretch > 0)

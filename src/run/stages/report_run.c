@@ -46,6 +46,26 @@ static json_t *helpers_json(void)
   return o;
 }
 
+static json_t *size_json(const struct vg_run *r)
+{
+  static const char *const kind[VG_SLICE_KINDS] = { "tetrahedra", "pyramids",
+                                                    "prisms", "hexahedra" };
+  const struct vg_slices *s = &r->slices;
+  json_t *o = json_object();
+
+  json_object_set_new(o, "points", json_integer((json_int_t)s->n_point));
+  json_object_set_new(o, "cells", json_integer((json_int_t)vg_run_cells(r)));
+  for (int k = 0; k < VG_SLICE_KINDS; k++)
+    json_object_set_new(o, kind[k], json_integer((json_int_t)s->n_cell[k]));
+  json_object_set_new(o, "boundary_points",
+                      json_integer((json_int_t)s->n_boundary_point));
+  json_object_set_new(o, "boundary_triangles",
+                      json_integer((json_int_t)s->boundary->n_tri));
+  json_object_set_new(o, "boundary_quadrilaterals",
+                      json_integer((json_int_t)s->boundary->n_quad));
+  return o;
+}
+
 static void put_mesh(json_t *o, const struct vg_run_report *r)
 {
   const struct vg_problem *p = r->problem;
@@ -56,6 +76,11 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
   json_object_set_new(o, "sources",
                       vg_effects_json(&r->run->effects, &front,
                                       &p->resolved.settings));
+  json_object_set_new(o, "size", size_json(r->run));
+  if (p->read.wakes.n)
+    json_object_set_new(o, "wakes",
+                        vg_report_wakes_json(&p->read.wakes, r->run->n_probe,
+                                             r->run->probe));
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
   if (p->read.is_section)
     json_object_set_new(o, "plane", vg_report_plane_json(&r->run->plane));
@@ -244,6 +269,7 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
     vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
+  vg_report_wakes_text(to, &r->problem->read.wakes, m->n_probe, m->probe);
   if (m->parts) {
     fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);

@@ -454,6 +454,24 @@ done:
   return st;
 }
 
+/* Counts the cells across wakes. The lines are the same on all ranks. */
+static vg_status measure_wakes(struct vg_run *r, const struct vg_read_wakes *w,
+                               struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!w->n_probe) return VG_OK;
+  r->probe = vg_alloc(w->n_probe, sizeof *r->probe);
+  if (!r->probe) st = vg_fail_memory(err, "the lines across wakes");
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  memcpy(r->probe, w->probe, w->n_probe * sizeof *r->probe);
+  r->n_probe = w->n_probe;
+  st = vg_wake_measure(r->comm, &r->slices, r->threads, r->n_probe, r->probe,
+                       err);
+done:
+  return st;
+}
+
 /* Edges are compared with the sizing field only outside the layers, where sizes
  * are isotropic. The file of an invalid mesh is removed. */
 vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
@@ -486,6 +504,7 @@ vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
                             layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
+  if (st >= 0) st = measure_wakes(r, &p->read.wakes, err);
   if (st >= 0) st = accept(r, layers != NULL, err);
   if (st >= 0) st = accept_sheets(r, &p->boundary.surface, &put, err);
   if (st >= 0) st = vg_display_stopped(show, err);
@@ -722,6 +741,7 @@ void vg_run_release(struct vg_run *r, int success)
   free(r->sheets);
   vg_partition_free(r->field);
   vg_effects_release(&r->effects);
+  free(r->probe);
   vg_spans_release(&r->spans);
   vg_store_close(r->store, success && !r->options.keep);
 }

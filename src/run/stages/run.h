@@ -89,6 +89,8 @@ struct vg_run {
   struct vg_mesh_report judge, field_judge; /* Of the whole mesh; with layers,
                                                also of the field. */
   struct vg_effects effects;                /* On rank 0. */
+  size_t n_probe;
+  struct vg_wake_probe *probe; /* [n_probe] owned; lines across the wakes. */
   double time_size, time_layers, time_judge;
   double time_put;  /* Writing files during the mesh check. */
   double time_fill; /* Cuts, leaves and repairs. */

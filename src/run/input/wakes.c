@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "run/input/wakes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/flow/flow.h"
+#include "core/geometry/vector.h"
+#include "io/stream/convention.h"
+#include "run/input/cones.h"
+#include "run/input/shape_parts.h"
+#include "run/settings/patch_names.h"
+#include "run/settings/wake_table.h"
+
+/* W4: extents along y and z with a smaller ratio do not tell which axis points
+ * up. */
+#define FLAT 1.25
+
+/* Most lines across one wake at each station. */
+#define MOST_PROBES 64
+
+static const double stations[VG_WAKE_STATIONS] = VG_WAKE_STATION_CHORDS;
+
+/* The body whose trailing edges are searched, and the current row. */
+struct body {
+  struct vg_read *read;
+  struct vg_mesh m;      /* copy of the surface, points merged */
+  uint8_t *is_body, *on; /* [n_patch] owned */
+  struct vg_trailing edges;
+  const struct vg_wake_row *row;
+  size_t number; /* of the row, from 1 */
+  struct vg_wake wake;
+  struct vg_wake_panels panels;
+  size_t n_flow;
+  double flow[VG_WAKE_ANGLES * VG_WAKE_ANGLES][3];
+};
+
+static vg_status take_body(struct body *b, struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->read->surface;
+  vg_status st;
+
+  VG_TRY(vg_mesh_copy(&b->m, m, err));
+  vg_mesh_keep_boundary(&b->m);
+  VG_TRY(vg_split_quads(&b->m, err));
+  VG_TRY(vg_surface_merge_points(&b->m, err));
+  b->is_body = vg_alloc(m->n_patch, 1);
+  b->on = vg_alloc(m->n_patch, 1);
+  if (!b->is_body || !b->on) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++)
+    b->is_body[i] = !vg_patch_is_outer(&m->patch[i]);
+done:
+  return st;
+}
+
+/* Direction of the stream of a row at no angles. */
+static void stream_of(const struct vg_wake_row *row, double stream[3])
+{
+  for (int k = 0; k < 3; k++)
+    stream[k] = k != row->stream / 2 ? 0 : row->stream % 2 ? -1 : 1;
+}
+
+/* The trailing edges of the previous row serve this one if the stream is the
+ * same. */
+static vg_status find_edges(struct body *b, struct vg_error *err)
+{
+  double stream[3];
+
+  if (b->number > 1 && b->row->stream == b->row[-1].stream) return VG_OK;
+  stream_of(b->row, stream);
+  vg_trailing_release(&b->edges);
+  return vg_trailing_find(&b->m, b->is_body,
+                          b->read->settings.flow == VG_FLOW_INTERNAL, stream,
+                          &b->edges, err);
+}
+
+/* Extent of the body along an axis. */
+static double extent(const struct body *b, int axis)
+{
+  double lo = INFINITY, hi = -INFINITY;
+
+  for (size_t i = 0; i < 3 * b->m.n_tri; i++) {
+    const double x = b->m.point[b->m.tri[i / 3][i % 3]][axis];
+
+    if (!b->is_body[b->m.tri_patch[i / 3]]) continue;
+    lo = fmin(lo, x);
+    hi = fmax(hi, x);
+  }
+  return hi > lo ? hi - lo : 0;
+}
+
+/* The axis that points up. Without angles it does not matter. */
+static vg_status find_up(const struct body *b, int turns, double up[3],
+                         struct vg_error *err)
+{
+  const int one = (b->row->stream / 2 + 1) % 3, two = (one + 1) % 3;
+  const double a = extent(b, one), c = extent(b, two);
+  int axis = a < c ? one : two;
+
+  if (b->row->up != VG_UP_AUTO) axis = b->row->up - VG_UP_X;
+  else if (turns && fmax(a, c) < FLAT * fmin(a, c))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "wakes: line %zu: alpha or beta is given, but the body is "
+                   "about as large along %c (%.4g) as along %c (%.4g), so that "
+                   "either axis may point up; give the column up (%c or %c)",
+                   b->number, "xyz"[one], a, "xyz"[two], c, "xyz"[one],
+                   "xyz"[two]);
+  for (int k = 0; k < 3; k++) up[k] = k == axis;
+  return VG_OK;
+}
+
+static vg_status find_flows(struct body *b, struct vg_error *err)
+{
+  double alpha[VG_WAKE_ANGLES], beta[VG_WAKE_ANGLES];
+  const size_t n_alpha = vg_wake_angles(b->row->alpha, alpha);
+  const size_t n_beta = vg_wake_angles(b->row->beta, beta);
+  double stream[3], up[3];
+  int turns = 0;
+  vg_status st;
+
+  stream_of(b->row, stream);
+  for (size_t i = 0; i < n_alpha; i++) turns |= alpha[i] != 0;
+  for (size_t i = 0; i < n_beta; i++) turns |= beta[i] != 0;
+  st = find_up(b, turns, up, err);
+  b->n_flow = 0;
+  for (size_t i = 0; i < n_alpha && st >= 0; i++)
+    for (size_t j = 0; j < n_beta; j++)
+      vg_wake_direction(alpha[i], beta[j], stream, up, b->flow[b->n_flow++]);
+  return st;
+}
+
+static void row_name(const struct body *b, char *name, size_t size)
+{
+  vg_param_format(&vg_wake_table.column[0], b->row, name, size);
+}
+
+static vg_status refuse(const struct body *b, struct vg_error *err)
+{
+  char patch[2 * VG_NAME_MAX + 4];
+
+  row_name(b, patch, sizeof patch);
+  return vg_fail(
+    err, VG_ERR_INPUT,
+    "wakes: line %zu: patch %s has no trailing edge (the surface has %zu such "
+    "edges of triangles in all); with the stream along %s, sharp convex edges "
+    "of walls were sought, of at most 60 degrees, from which both sides extend "
+    "upstream, and bases of at most 5 %% of the chord that face downstream; "
+    "give the stream in the column stream, name another patch, or refine the "
+    "wake by rows of the table sources",
+    b->number, patch, b->edges.n, vg_wake_stream_word(b->row));
+}
+
+static double panel_length(const struct body *b)
+{
+  double length = 0;
+
+  for (size_t i = 0; i < b->panels.n; i++)
+    length += vg_distance(b->panels.item[i].x[0], b->panels.item[i].x[1]);
+  return length;
+}
+
+static void note_wake(const struct body *b, size_t n_source)
+{
+  char patch[2 * VG_NAME_MAX + 4];
+  double least = INFINITY, most = 0, size = b->wake.size;
+  const double growth = b->wake.growth - 1;
+
+  for (size_t i = 0; i < b->panels.n; i++)
+    for (int k = 0; k < 2; k++) {
+      least = fmin(least, b->panels.item[i].chord[k]);
+      most = fmax(most, b->panels.item[i].chord[k]);
+    }
+  row_name(b, patch, sizeof patch);
+  vg_note(b->read->notes,
+          "wake %zu (patch %s): trailing edges of %.4g in total, with chords "
+          "of %.4g to %.4g, and %zu direction%s of the stream; sizes of %.3g "
+          "to %.3g, %zu sources",
+          b->number, patch, panel_length(b), least, most, b->n_flow,
+          b->n_flow > 1 ? "s" : "", size * least,
+          (size + growth * b->wake.length) * most, n_source);
+}
+
+static vg_status add_sources(struct body *b, struct vg_error *err)
+{
+  struct vg_settings *s = &b->read->settings;
+  const size_t per_panel = vg_wake_sources_count(&b->wake);
+  const double n = (double)per_panel * (double)b->panels.n * (double)b->n_flow;
+  size_t at = s->n_source;
+
+  if (n + (double)at > VG_WAKE_SOURCES)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "wakes: line %zu requests %.0f sources, and the limit is "
+                   "%d; increase height, or reduce length or the number of "
+                   "angles",
+                   b->number, n, VG_WAKE_SOURCES);
+  if (vg_reserve(&s->source, &s->cap_source, at + (size_t)n, sizeof *s->source))
+    return vg_fail_memory(err, "the wakes");
+  for (size_t k = 0; k < b->n_flow; k++)
+    for (size_t i = 0; i < b->panels.n; i++, at += per_panel)
+      vg_wake_sources(&b->wake, &b->panels.item[i], b->flow[k], s->source + at);
+  for (size_t i = s->n_source; i < at; i++)
+    snprintf(s->source[i].group, sizeof s->source[i].group, "wake %zu",
+             b->number);
+  s->n_source = at;
+  note_wake(b, (size_t)n);
+  return VG_OK;
+}
+
+/* Lines across the wake at each station, evenly over its panels. */
+static vg_status add_probes(struct body *b, struct vg_error *err)
+{
+  struct vg_read_wakes *to = &b->read->wakes;
+  const size_t n = b->panels.n * b->n_flow;
+  const size_t step = (n + MOST_PROBES - 1) / MOST_PROBES;
+
+  for (size_t k = 0; k < VG_WAKE_STATIONS; k++)
+    for (size_t i = step / 2; i < n; i += step) {
+      struct vg_wake_probe *p;
+
+      if (vg_reserve(&to->probe, &to->cap_probe, to->n_probe + 1,
+                     sizeof *to->probe))
+        return vg_fail_memory(err, "the wakes");
+      p = to->probe + to->n_probe;
+      if (!vg_wake_probe(&b->wake, &b->panels.item[i % b->panels.n],
+                         b->flow[i / b->panels.n], stations[k],
+                         b->read->settings.scale, p))
+        continue;
+      p->wake = b->number - 1;
+      p->station = k;
+      to->n_probe++;
+    }
+  return VG_OK;
+}
+
+static vg_status place_row(struct body *b, struct vg_error *err)
+{
+  const struct vg_wake_row *row = b->row;
+  const size_t n_patch = b->m.n_patch;
+  vg_status st;
+
+  b->wake = (struct vg_wake){ row->length, row->size, row->height, row->growth,
+                              row->chord };
+  memset(b->on, 0, n_patch);
+  VG_TRY(vg_patch_ref_mark("wakes", row->patch, row->patch_name, &b->m, n_patch,
+                           b->on, err));
+  VG_TRY(find_edges(b, err));
+  VG_TRY(
+    vg_wake_panels_make(&b->m, &b->edges, b->on, &b->wake, &b->panels, err));
+  if (!b->panels.n) return refuse(b, err);
+  VG_TRY(find_flows(b, err));
+  VG_TRY(add_sources(b, err));
+  st = add_probes(b, err);
+done:
+  vg_wake_panels_release(&b->panels);
+  return st;
+}
+
+/* The setting `wakes` is a row of its own. */
+static vg_status take_rows(struct vg_read *r, struct vg_error *err)
+{
+  struct vg_settings *s = &r->settings;
+  struct vg_wake_row row;
+  vg_status st = VG_OK;
+
+  if (s->wakes) {
+    vg_settings_row_default(VG_TABLE_WAKES, &row);
+    st = vg_settings_add(s, VG_TABLE_WAKES, &row, err);
+  }
+  s->wakes = 0;
+  r->wakes.n = s->n_wake;
+  r->wakes.row = s->wake_row;
+  s->n_wake = s->cap_wake = 0;
+  s->wake_row = NULL;
+  return st;
+}
+
+vg_status vg_read_place_wakes(struct vg_read *r, struct vg_error *err)
+{
+  struct body *b;
+  vg_status st;
+
+  VG_TRY(take_rows(r, err));
+  if (!r->wakes.n) return VG_OK;
+  b = vg_calloc(1, sizeof *b);
+  if (!b) return vg_fail_memory(err, "the wakes");
+  b->read = r;
+  st = take_body(b, err);
+  for (size_t i = 0; i < r->wakes.n && st >= 0; i++) {
+    b->row = r->wakes.row + i;
+    b->number = i + 1;
+    st = place_row(b, err);
+  }
+  vg_trailing_release(&b->edges);
+  vg_mesh_release(&b->m);
+  free(b->is_body);
+  free(b->on);
+  free(b);
+done:
+  return st;
+}
+
+void vg_read_wakes_release(struct vg_read_wakes *w)
+{
+  free(w->row);
+  free(w->probe);
+  memset(w, 0, sizeof *w);
+}

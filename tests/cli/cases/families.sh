@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Families with the laws of a workshop: two levels are meshed, one is planned,
+# and the tables have the figures that the workshop asks for.
+vanguard demo wing-sharp --cells 20000 --out w
+exits 0
+vanguard sweep -q -p w/wing-sharp --family hlpw:A-C --planned C --out fam -- \
+  --write b8.ugrid
+exits 0
+says out "hlpwA"
+says out "hlpwC*"
+says out "* planned, not meshed"
+[ -s fam/hlpwA-n1-t1/wing-sharp.b8.ugrid ] || fail "no mesh of level A"
+[ -s fam/hlpwC-n1-t1/plan.json ] || fail "no forecast of level C"
+grep -q "Grid metrics" fam/metrics.html || fail "no page"
+python3 - fam/metrics.csv <<'PY' || fail "metrics.csv"
+import csv, sys
+a, b, c = csv.DictReader(open(sys.argv[1]))
+assert [r["level"] for r in (a, b, c)] == ["hlpwA", "hlpwB", "hlpwC"]
+assert [r["state"] for r in (a, b, c)] == ["meshed", "meshed", "planned"]
+for row, y, g in ((a, 2.25, 1.25), (b, 1.5, 1.16)):
+    assert abs(float(row["y_plus"]) - y) < 1e-6 * y, row
+    assert float(row["growth_max"]) <= g + 1e-6, row
+    assert float(row["nodes"]) > float(row["boundary_nodes"]) > 0
+    kinds = ("tetrahedra", "pyramids", "prisms", "hexahedra")
+    assert sum(float(row[k]) for k in kinds) == float(row["cells"])
+    assert float(row["percent_full_layers"]) > 99
+assert float(b["cells_ratio_requested"]) == 3.375
+assert float(b["cells"]) > float(a["cells"])
+assert float(c["cells"]) > float(b["cells"]) and c["boundary_nodes"] == ""
+assert float(c["y_plus_requested"]) == 1
+PY
+
+refuses() { # MESSAGE OPTION...
+  local message=$1
+  shift
+  vanguard sweep -q -p w/wing-sharp --out no "$@"
+  exits 2
+  says err "$message"
+}
+refuses "its levels are 1 to 6" --family dpw:7
+refuses "its levels are A to F" --family hlpw:1
+refuses "its levels are A to F" --family hlpw:C-A
+refuses "its levels are A to F" --family hlpw:
+refuses "'gmgw:1' is no family" --family gmgw:1
+vanguard sweep -q -p w/wing-sharp --out no --family dpw:1,3 --planned 2
+exits 1
+says err "level 2 is not in --family"
+vanguard sweep -q -p w/wing-sharp --out no --family 1:2 --planned 2
+exits 1
+says err "needs a family with the laws of a workshop"
+sed 's/ *5000000 / 0 /; s/0\.7 *$/0/; s/^\(4 *\)1 /\10 /' w/wing-sharp.deck >w/n.deck
+vanguard sweep -q -p w/wing-sharp --deck w/n.deck --out no --family dpw:1
+exits 1
+says err "need reynolds and reference_length"
