@@ -166,6 +166,7 @@ struct findings {
   const struct vg_read_info *info;
   struct vg_mesh_report quality;
   struct vg_sheet_report *sheets; /* [m->n_sheet] */
+  struct vg_zone_report *zones;   /* [m->n_zone] */
   int has_accuracy;
   struct vg_accuracy_report accuracy;
 };
@@ -173,7 +174,10 @@ struct findings {
 /* The setting for inner surfaces that was given in vain, or NULL. */
 static const char *inner_setting(const struct vg_problem *p)
 {
-  return *p->asked.baffles ? "baffles" : *p->asked.sheets ? "sheets" : NULL;
+  return *p->asked.baffles    ? "baffles"
+       : *p->asked.sheets     ? "sheets"
+       : *p->asked.interfaces ? "interfaces"
+                              : NULL;
 }
 
 static void put_json(const struct arguments *a, const struct vg_problem *p,
@@ -191,6 +195,8 @@ static void put_json(const struct arguments *a, const struct vg_problem *p,
 
   if (f->sheets)
     json_object_set_new(o, "sheets", vg_report_sheets_json(f->m, f->sheets));
+  if (f->zones)
+    json_object_set_new(o, "zones", vg_report_zones_json(f->m, f->zones));
   if (f->has_accuracy)
     json_object_set_new(o, "accuracy",
                         vg_report_accuracy_json(&f->accuracy, f->m));
@@ -212,6 +218,7 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   if (vg_report_patches_text(stdout, f->m, NULL) < 0)
     return vg_fail_memory(err, "the patches");
   vg_report_sheets_text(stdout, f->m, f->sheets);
+  vg_report_zones_text(stdout, f->m, f->zones);
   if (turned->cell)
     printf("  cells of negative volume, mirrored on reading: %zu\n",
            turned->cell);
@@ -238,6 +245,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
 
   VG_TRY(judge(a, p, m, &f.quality, err));
   VG_TRY(vg_sheet_sides_judge(m, &f.sheets, err));
+  VG_TRY(vg_zone_quality_judge(m, &f.zones, err));
   if (a->with_accuracy && r->is_valid) {
     VG_TRY(vg_check_accuracy(&p->asked, m, &f.accuracy, err));
     f.has_accuracy = 1;
@@ -251,6 +259,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   vg_report_mesh_limits_text(stderr, &p->asked, r);
 done:
   free(f.sheets);
+  free(f.zones);
   vg_accuracy_release(&f.accuracy);
   return st;
 }

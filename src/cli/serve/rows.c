@@ -131,6 +131,7 @@ union row {
   struct vg_patch_row p;
   struct vg_layer_row l;
   struct vg_surface_row f;
+  struct vg_zone_row z;
   struct vg_source s;
 };
 

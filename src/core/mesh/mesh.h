@@ -44,7 +44,19 @@ struct vg_patch {
                              side has the same triangles, reversed */
   int32_t is_sheet;       /* 1: an inner surface through which the mesh is
                              connected (core/mesh/sheets.h) */
+  int32_t is_interface;   /* 1: a sheet that separates zones */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
+};
+
+/* What the cells of a zone are to a solver. */
+enum { VG_ZONE_FLUID, VG_ZONE_ROTATING, VG_ZONE_POROUS, VG_ZONE_SOLID };
+
+/** A named part of the cells (core/mesh/zones.h). */
+struct vg_zone {
+  int32_t id;         /* number in the files, unique, > 0 */
+  int32_t kind;       /* VG_ZONE_... */
+  uint64_t n_cell[4]; /* tetrahedra, pyramids, prisms, hexahedra */
+  char name[VG_NAME_MAX];
 };
 
 struct vg_mesh {
@@ -64,6 +76,9 @@ struct vg_mesh {
   uint32_t (*sheet_tri)[3]; /* [n_sheet_tri] of any orientation */
   uint32_t *sheet_of;       /* [n_sheet_tri] index into sheet[] */
   struct vg_patch *sheet;   /* [n_sheet] numbers and names */
+  /* Zones: cells of each kind are in the order of their zones. */
+  size_t n_zone;
+  struct vg_zone *zone; /* [n_zone]; 0: all cells are one nameless zone */
 };
 #define VG_MESH_INIT                                                           \
   {                                                                            \

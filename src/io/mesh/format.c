@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 #include "io/cad/cad.h"
 #include "io/cgns/cgns.h"
 #include "io/mesh/aflr.h"
@@ -444,6 +445,7 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
   if (found.n_cell) VG_TRY(read_sheets(path, &m, err));
   VG_TRY(vg_mesh_take_inner(&m, &found.inner, err));
   VG_TRY(check_sheets(path, &m, err));
+  VG_TRY(vg_mesh_mark_interfaces(&m, err));
   forgive_sheets(&m, &found.match);
   if (found.turned.loose_face >= found.inner.n_copy)
     found.turned.loose_face -= found.inner.n_copy;

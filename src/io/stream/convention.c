@@ -16,6 +16,7 @@
 #include "core/geometry/volume.h"
 #include "core/mesh/cell_faces.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 
 static int is_in_range(double x)
 {
@@ -616,6 +617,7 @@ static vg_status take_inner(struct inner_faces *q, struct vg_error *err)
   m->sheet_of = vg_alloc(n, sizeof *m->sheet_of);
   m->sheet = vg_alloc(m->n_patch, sizeof *m->sheet);
   if (!m->sheet_tri || !m->sheet_of || !m->sheet) {
+    vg_mesh_drop_zones(m);
     vg_mesh_drop_sheets(m);
     return vg_fail_memory(err, "the faces between cells");
   }

@@ -22,6 +22,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
+#include "run/input/zones.h"
 #include "run/input/mesh_unit.h"
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
@@ -67,6 +68,7 @@ static void release_files(struct vg_input_files *f)
 
 void vg_boundary_release(struct vg_boundary *b)
 {
+  vg_boundary_forget_zones(b);
   vg_boundary_forget_gaps(b);
   if (b->common.data) vg_shmem_release(&b->common);
   else vg_mesh_release(&b->surface);

@@ -243,6 +243,7 @@ union table_row {
   struct vg_patch_row patch;
   struct vg_layer_row layer;
   struct vg_surface_row surface;
+  struct vg_zone_row zone;
   struct vg_source source;
   struct vg_sweep_row sweep;
 };

@@ -333,6 +333,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     struct vg_patch_row patch;
     struct vg_layer_row layer;
     struct vg_surface_row surface;
+    struct vg_zone_row zone;
     struct vg_source source;
     struct vg_sweep_row sweep;
   } row;

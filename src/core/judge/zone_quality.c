@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/judge/zone_quality.h"
+
+#include <assert.h>
+#include <pthread.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "core/geometry/exact_sum.h"
+#include "core/judge/quality.h"
+
+/* Sums of a zone. */
+struct sums {
+  uint64_t n_cell;
+  struct vg_exact volume;
+  double angle_min;
+};
+
+struct vg_zone_quality {
+  const struct vg_mesh *m; /* borrowed */
+  pthread_mutex_t lock;
+  struct sums *sums; /* [n_zone], guarded by lock */
+};
+
+vg_status vg_zone_quality_new(const struct vg_mesh *m,
+                              struct vg_zone_quality **out,
+                              struct vg_error *err)
+{
+  struct vg_zone_quality *q;
+
+  assert(m && out);
+  *out = NULL;
+  if (!m->n_zone) return VG_OK;
+  q = vg_calloc(1, sizeof *q);
+  if (!q) return vg_fail_memory(err, "the zones");
+  q->m = m;
+  q->sums = vg_calloc(m->n_zone, sizeof *q->sums);
+  if (!q->sums) {
+    free(q);
+    return vg_fail_memory(err, "the zones");
+  }
+  for (size_t z = 0; z < m->n_zone; z++) q->sums[z].angle_min = 180;
+  pthread_mutex_init(&q->lock, NULL);
+  *out = q;
+  return VG_OK;
+}
+
+void vg_zone_quality_free(struct vg_zone_quality *q)
+{
+  if (!q) return;
+  pthread_mutex_destroy(&q->lock);
+  free(q->sums);
+  free(q);
+}
+
+/* Adds n cells of a kind. angle: of tetrahedra, or NULL */
+static void add_run(const struct vg_slice *slice, int kind, size_t first,
+                    size_t n, const float *angle, struct sums *to)
+{
+  const size_t width = vg_slice_width[kind];
+
+  to->n_cell += n;
+  for (size_t c = first; c < first + n; c++) {
+    vg_exact_add(&to->volume,
+                 vg_cell_volume(slice->x, kind, slice->cell[kind] + c * width));
+    if (angle && (double)angle[c] < to->angle_min)
+      to->angle_min = (double)angle[c];
+  }
+}
+
+/* Runs of cells of one zone. */
+static void add_kind(struct vg_zone_quality *q, const struct vg_slice *slice,
+                     int kind, const float *angle)
+{
+  uint64_t end = 0;
+  size_t c = 0;
+
+  for (size_t z = 0; z < q->m->n_zone && c < slice->n_cell[kind]; z++) {
+    size_t n;
+
+    end += q->m->zone[z].n_cell[kind];
+    if (end <= slice->cell_at[kind] + c) continue;
+    n = (size_t)(end - slice->cell_at[kind]) - c;
+    if (n > slice->n_cell[kind] - c) n = slice->n_cell[kind] - c;
+    add_run(slice, kind, c, n, kind == VG_SLICE_TET ? angle : NULL,
+            &q->sums[z]);
+    c += n;
+  }
+}
+
+vg_status vg_zone_quality_add(struct vg_zone_quality *q,
+                              const struct vg_slice *slice,
+                              struct vg_error *err)
+{
+  const struct vg_mesh tets = { .n_point = slice->n_point,
+                                .point = (double(*)[3])(uintptr_t)slice->x,
+                                .n_tet = slice->n_cell[VG_SLICE_TET],
+                                .tet = (uint32_t(*)[4])(
+                                         uintptr_t)slice->cell[VG_SLICE_TET] };
+  float *angle;
+
+  if (!q) return VG_OK;
+  angle = vg_alloc(tets.n_tet, sizeof *angle);
+  if (!angle) return vg_fail_memory(err, "the zones");
+  vg_mesh_cell_quality(&tets, angle, NULL);
+  pthread_mutex_lock(&q->lock);
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++)
+    add_kind(q, slice, kind, angle);
+  pthread_mutex_unlock(&q->lock);
+  free(angle);
+  return VG_OK;
+}
+
+vg_status vg_zone_quality_sum(struct vg_comm *comm,
+                              const struct vg_zone_quality *q,
+                              struct vg_zone_report *report,
+                              struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t z = 0; q && z < q->m->n_zone; z++) {
+    struct sums sums = q->sums[z];
+
+    sums.angle_min = -sums.angle_min;
+    VG_TRY(vg_comm_sum(comm, 1, &sums.n_cell, err));
+    VG_TRY(vg_comm_sum(comm, VG_EXACT_LIMBS, sums.volume.limb, err));
+    VG_TRY(vg_comm_sum(comm, 1, &sums.volume.n_odd, err));
+    VG_TRY(vg_comm_max(comm, 1, &sums.angle_min, err));
+    report[z] = (struct vg_zone_report){ sums.n_cell,
+                                         vg_exact_value(&sums.volume),
+                                         -sums.angle_min };
+  }
+done:
+  return st;
+}
+
+vg_status vg_zone_quality_judge(const struct vg_mesh *m,
+                                struct vg_zone_report **report,
+                                struct vg_error *err)
+{
+  const struct vg_slice all = {
+    .n_point = m->n_point,
+    .x = (const double(*)[3])m->point,
+    .n_cell = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex },
+    .cell = { (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
+              (const uint32_t *)m->pri, (const uint32_t *)m->hex }
+  };
+  struct vg_zone_report *r = NULL;
+  struct vg_zone_quality *q = NULL;
+  vg_status st;
+
+  *report = NULL;
+  VG_TRY(vg_zone_quality_new(m, &q, err));
+  if (!q) goto done;
+  r = vg_calloc(m->n_zone, sizeof *r);
+  if (!r) VG_TRY(vg_fail_memory(err, "the zones"));
+  VG_TRY(vg_zone_quality_add(q, &all, err));
+  VG_TRY(vg_zone_quality_sum(NULL, q, r, err));
+  *report = r;
+  r = NULL;
+done:
+  vg_zone_quality_free(q);
+  free(r);
+  return st;
+}

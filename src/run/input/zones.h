@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* run/input/zones.h: zones of cells, from the interfaces of the closed surface
+ * and the table `zones`. */
+#ifndef VG_RUN_INPUT_ZONES_H
+#define VG_RUN_INPUT_ZONES_H
+
+#include "core/sides/zone_map.h"
+#include "run/input/input.h"
+
+/** Find the zones of a surface, with names and kinds from the table `zones`.
+ *
+ * @param hmax  out: [z->n] largest edges, 0: none; to be freed. NULL: not asked
+ * VG_ERR_INPUT for a seed point outside the fluid or on a triangle, two seed
+ * points in one zone, and two zones of one name; otherwise as vg_zone_map_new.
+ * *z is empty on failure. */
+vg_status vg_zones_make(const struct vg_settings *s,
+                        const struct vg_mesh *surface, struct vg_zone_map *z,
+                        double **hmax, struct vg_error *err);
+
+/** Do interfaces divide the surface into zones? */
+int vg_mesh_has_interfaces(const struct vg_mesh *surface);
+
+/** Find the zones of the closed surface of b, if it has interfaces, and add
+ * their sizes to b->map. Notes list the zones. VG_ERR_INPUT also for a table
+ * `zones` without interfaces. */
+vg_status vg_boundary_add_zones(struct vg_boundary *b, struct vg_error *err);
+
+/** Release b->zones; b->map is that from before. */
+void vg_boundary_forget_zones(struct vg_boundary *b);
+
+/** VG_ERR_INPUT if the table `zones` has rows, and no patch is an interface. */
+vg_status vg_zones_check(const struct vg_boundary *b, struct vg_error *err);
+
+#endif
