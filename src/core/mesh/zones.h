@@ -26,6 +26,16 @@ size_t vg_mesh_zone_of(const struct vg_mesh *m, int kind, uint64_t cell);
  * one. O(n_zone). */
 uint64_t vg_mesh_zone_start(const struct vg_mesh *m, size_t z, int kind);
 
+/** Walk along the zones of the cells of a kind, in their order: *z, 0 at first,
+ * becomes the zone of `cell`, and *end, 0 at first, the number after the last
+ * cell of that zone. O(1) per cell. */
+static inline void vg_mesh_zone_walk(const struct vg_mesh *m, int kind,
+                                     uint64_t cell, size_t *z, uint64_t *end)
+{
+  if (!*end && m->n_zone) *end = m->zone[*z].n_cell[kind];
+  while (cell >= *end && *z + 1 < m->n_zone) *end += m->zone[++*z].n_cell[kind];
+}
+
 /** Cells of all kinds in zone z. */
 uint64_t vg_mesh_zone_cells(const struct vg_mesh *m, size_t z);
 

@@ -20,15 +20,16 @@
 
 #define VG_SHEET_SUFFIX "sheets"
 
-/** Write the sheets and zones of m, which has n_point points and n_cell cells; other
- * members of m are not used. VG_ERR_IO, VG_ERR_MEMORY. */
+/** Write the sheets and zones of m, which has n_point points and n_cell cells;
+ * other members of m are not used. VG_ERR_IO, VG_ERR_MEMORY. */
 vg_status vg_sheet_file_write(const char *path, const struct vg_mesh *m,
                               uint64_t n_point, uint64_t n_cell,
                               struct vg_error *err);
 
 /** Append the triangles in the file to the boundary of m, with a patch for each
- * sheet, which has is_sheet, and its zones to m, which has none. VG_ERR_INPUT if the file belongs to another mesh;
- * VG_ERR_FORMAT, VG_ERR_IO, VG_ERR_MEMORY. m is unchanged on failure. */
+ * sheet, which has is_sheet, and its zones to m, which has none. VG_ERR_INPUT
+ * if the file belongs to another mesh; VG_ERR_FORMAT, VG_ERR_IO, VG_ERR_MEMORY.
+ * m is unchanged on failure. */
 vg_status vg_sheet_file_read(const char *path, struct vg_mesh *m,
                              struct vg_error *err);
 
