@@ -233,6 +233,25 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   return VG_OK;
 }
 
+/* Every triangle of an interface lies between two zones. */
+static vg_status check_interfaces(const struct arguments *a,
+                                  const struct vg_mesh *m,
+                                  struct vg_mesh_report *r,
+                                  struct vg_error *err)
+{
+  double x[3];
+  size_t n;
+  vg_status st = vg_interfaces_judge(m, &n, x, err);
+
+  if (st < 0 || !n) return st;
+  r->is_valid = 0;
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the mesh is not valid: %zu triangles of interfaces have "
+                 "one zone on both sides, the first one at (%g, %g, %g); write "
+                 "the zones and interfaces again from the mesh they belong to",
+                 a->one.file, n, x[0], x[1], x[2]);
+}
+
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                             const struct vg_mesh *m,
                             const struct vg_read_info *info,
@@ -251,6 +270,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
     f.has_accuracy = 1;
   }
   if (!r->is_valid) st = not_valid(a, &info->turned, err);
+  else st = check_interfaces(a, m, &f.quality, err);
   *a->missed = vg_mesh_limits_missed(&p->asked, r, limit) > 0;
   if (a->one.json) put_json(a, p, &f, err);
   else if (put_text(a, p, &f, err) < 0) st = VG_ERR_MEMORY;

@@ -163,3 +163,26 @@ done:
   free(r);
   return st;
 }
+
+vg_status vg_interfaces_judge(const struct vg_mesh *m, size_t *n, double x[3],
+                              struct vg_error *err)
+{
+  uint32_t(*zone)[2] = vg_alloc(m->n_sheet_tri, sizeof *zone);
+  vg_status st = zone ? VG_OK : vg_fail_memory(err, "the zones");
+
+  *n = 0;
+  VG_TRY(st);
+  VG_TRY(vg_mesh_zone_sides(m, zone, err));
+  for (size_t t = 0; t < m->n_sheet_tri; t++) {
+    const uint32_t *v = m->sheet_tri[t];
+
+    if (!m->sheet[m->sheet_of[t]].is_interface || zone[t][0] != zone[t][1])
+      continue;
+    for (int d = 0; d < 3 && !*n; d++)
+      x[d] = (m->point[v[0]][d] + m->point[v[1]][d] + m->point[v[2]][d]) / 3;
+    ++*n;
+  }
+done:
+  free(zone);
+  return st;
+}

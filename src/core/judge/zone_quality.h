@@ -41,6 +41,11 @@ vg_status vg_zone_quality_sum(struct vg_comm *comm,
 /** Accepts NULL. */
 void vg_zone_quality_free(struct vg_zone_quality *q);
 
+/** Triangles of interfaces that do not lie between two zones: *n of them; the
+ * first one is at x. O(n). VG_ERR_MEMORY. */
+vg_status vg_interfaces_judge(const struct vg_mesh *m, size_t *n, double x[3],
+                              struct vg_error *err);
+
 /** The same for a whole mesh.
  * @param report  out: [n_zone], to be freed; NULL without zones
  * VG_ERR_MEMORY. */

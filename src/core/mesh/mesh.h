@@ -34,6 +34,8 @@
 /* Part of an inner surface, which has fluid on both sides. */
 enum { VG_INNER_NOT, VG_INNER_FRONT, VG_INNER_BACK };
 
+#define VG_SHEET_GONE 2
+
 /** A named part of the boundary. */
 struct vg_patch {
   int32_t id;             /* number in the files; any value, unique */
@@ -43,8 +45,11 @@ struct vg_patch {
   int32_t inner;          /* VG_INNER_...: side of an inner surface; its other
                              side has the same triangles, reversed */
   int32_t is_sheet;       /* 1: an inner surface through which the mesh is
-                             connected (core/mesh/sheets.h) */
-  int32_t is_interface;   /* 1: a sheet that separates zones */
+                             connected (core/mesh/sheets.h); VG_SHEET_GONE: a
+                             patch without triangles that goes away with the
+                             sheets */
+  int32_t is_interface;   /* 1: a sheet that separates zones, or a wall between a
+                             zone and one without cells */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 

@@ -200,10 +200,10 @@ vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
                              struct vg_error *err)
 {
   const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  const uint32_t *const cell[VG_ZONE_KINDS] = {
-    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
-    (const uint32_t *)m->pri, (const uint32_t *)m->hex
-  };
+  const uint32_t *const cell[VG_ZONE_KINDS] = { (const uint32_t *)m->tet,
+                                                (const uint32_t *)m->pyr,
+                                                (const uint32_t *)m->pri,
+                                                (const uint32_t *)m->hex };
   struct vg_sheet_table t;
   vg_status st;
 

@@ -47,9 +47,8 @@ vg_status vg_mesh_sort_zones(struct vg_mesh *m, const uint32_t *of,
                              struct vg_error *err);
 
 /** Zones on both sides of the triangles of sheets.
- * @param zone  out: [m->n_sheet_tri] before (in the direction of the normal) and
- *              behind; UINT32_MAX: no cell is there
- * O(n). VG_ERR_MEMORY. */
+ * @param zone  out: [m->n_sheet_tri] before (in the direction of the normal)
+ * and behind; UINT32_MAX: no cell is there O(n). VG_ERR_MEMORY. */
 vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
                              struct vg_error *err);
 

@@ -271,7 +271,7 @@ static vg_status check_closed(const struct work *w, struct vg_error *err)
   for (size_t i = 0; i < w->n_single; i++) {
     const uint32_t *r = w->sides.region + 2 * i;
 
-    if (patch_of(w, i)->is_interface &&
+    if (patch_of(w, i)->is_interface && patch_of(w, i)->is_sheet &&
         vg_root_of(w->up, r[0]) == vg_root_of(w->up, r[1]))
       return not_closed(w, i, err);
   }

@@ -25,6 +25,13 @@ int vg_mesh_has_interfaces(const struct vg_mesh *surface)
 /* --- the table --------------------------------------------------------------
  */
 
+/* Has the zone no cells? */
+static int is_empty_row(const struct vg_zone_row *r)
+{
+  return r->mesh == VG_ANSWER_NO ||
+         (r->mesh == VG_ANSWER_AUTO && r->kind == VG_ZONE_SOLID);
+}
+
 static vg_status refuse_seed(const struct vg_zone_row *r, uint32_t zone,
                              struct vg_error *err)
 {
@@ -95,8 +102,9 @@ static void put_names(const struct vg_settings *s, const size_t *of,
 }
 
 vg_status vg_zones_make(const struct vg_settings *s,
-                        const struct vg_mesh *surface, struct vg_zone_map *z,
-                        double **hmax, struct vg_error *err)
+                        const struct vg_mesh *surface, int is_cut,
+                        struct vg_zone_map *z, double **hmax,
+                        struct vg_error *err)
 {
   size_t *of = NULL;
   vg_status st;
@@ -106,7 +114,9 @@ vg_status vg_zones_make(const struct vg_settings *s,
   if (hmax) *hmax = vg_calloc(z->n, sizeof **hmax);
   if (!of || (hmax && !*hmax)) VG_TRY(vg_fail_memory(err, "the zones"));
   memset(of, 0xff, z->n * sizeof *of);
-  for (size_t i = 0; i < s->n_zone; i++) VG_TRY(take_row(s, i, z, of, err));
+  for (size_t i = 0; i < s->n_zone; i++)
+    if (!is_cut || !is_empty_row(&s->zone[i]))
+      VG_TRY(take_row(s, i, z, of, err));
   put_names(s, of, z);
   for (size_t k = 0; hmax && k < z->n; k++)
     if (of[k] != SIZE_MAX) (*hmax)[k] = s->zone[of[k]].hmax;
@@ -124,7 +134,7 @@ vg_status vg_zones_check(const struct vg_boundary *b, struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
 
-  if (!s->n_zone || vg_mesh_has_interfaces(&b->surface)) return VG_OK;
+  if (!s->n_zone || b->zones) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: the table zones names zones, but no patch is an "
                  "interface; name the patches that enclose them in interfaces, "
@@ -190,25 +200,57 @@ static void note_zones(const struct vg_boundary *b, const struct vg_zones *z)
   }
 }
 
+/* Removes the zones without cells. */
+static vg_status cut_zones(struct vg_boundary *b, struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  struct vg_zone_map map = VG_ZONE_MAP_INIT;
+  uint8_t *is_empty = NULL;
+  size_t n = 0;
+  vg_status st;
+
+  for (size_t i = 0; i < s->n_zone; i++) n += (size_t)is_empty_row(&s->zone[i]);
+  if (!n) return VG_OK;
+  VG_TRY(vg_zones_make(s, &b->surface, 0, &map, NULL, err));
+  if (n == map.n)
+    VG_TRY(
+      vg_fail(err, VG_ERR_INPUT,
+              "zones: no zone has cells; set mesh to yes for one of them"));
+  is_empty = vg_calloc(map.n, 1);
+  if (!is_empty) VG_TRY(vg_fail_memory(err, "the zones"));
+  for (size_t i = 0; i < s->n_zone; i++)
+    if (is_empty_row(&s->zone[i])) {
+      is_empty[vg_zone_map_at(&map, s->zone[i].seed)] = 1;
+      vg_note(b->notes, "zone %s: %s, without cells", s->zone[i].name,
+              vg_zone_kind_word[s->zone[i].kind]);
+    }
+  st = vg_boundary_cut_zones(b, &map, is_empty, err);
+done:
+  free(is_empty);
+  vg_zone_map_release(&map);
+  return st;
+}
+
 vg_status vg_boundary_add_zones(struct vg_boundary *b, struct vg_error *err)
 {
-  struct vg_zones *z;
+  struct vg_zones *z = NULL;
   vg_status st;
 
   assert(!b->zones);
   if (!vg_mesh_has_interfaces(&b->surface)) return VG_OK;
+  VG_TRY(cut_zones(b, err));
   z = vg_calloc(1, sizeof *z);
   if (!z) return vg_fail_memory(err, "the zones");
-  st = vg_zones_make(&b->read->settings, &b->surface, &z->map, &z->hmax, err);
-  if (st < 0) {
-    free(z);
-    return st;
-  }
   z->other = b->map;
+  VG_TRY(vg_zones_make(&b->read->settings, &b->surface, 1, &z->map, &z->hmax,
+                       err));
   add_sizes(b, z);
   note_zones(b, z);
   b->zones = z;
-  return VG_OK;
+  z = NULL;
+done:
+  free(z);
+  return st;
 }
 
 void vg_boundary_forget_zones(struct vg_boundary *b)

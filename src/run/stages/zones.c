@@ -14,7 +14,7 @@ vg_status vg_run_sort_zones(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   if (!vg_mesh_has_interfaces(surface)) return VG_OK;
-  st = vg_zones_make(&p->read.settings, surface, &map, NULL, err);
+  st = vg_zones_make(&p->read.settings, surface, 1, &map, NULL, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   r->unsorted = r->slices;
   st = vg_zone_slices_open(r->comm, &map, &r->unsorted, r->threads, &r->slices,
