@@ -174,10 +174,10 @@ struct findings {
 /* The setting for inner surfaces that was given in vain, or NULL. */
 static const char *inner_setting(const struct vg_problem *p)
 {
-  return *p->asked.baffles    ? "baffles"
-       : *p->asked.sheets     ? "sheets"
-       : *p->asked.interfaces ? "interfaces"
-                              : NULL;
+  return *p->asked.baffles         ? "baffles"
+       : *p->asked.sheets          ? "sheets"
+       : *p->asked.zone_interfaces ? "zone_interfaces"
+                                   : NULL;
 }
 
 static void put_json(const struct arguments *a, const struct vg_problem *p,

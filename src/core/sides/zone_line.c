@@ -7,17 +7,17 @@ int vg_line_crosses(const double *const x[3], const double *a, const double *b)
 {
   const double from = vg_orient3d(x[0], x[1], x[2], a);
   const double to = vg_orient3d(x[0], x[1], x[2], b);
-  int n_positive = 0;
+  int n_positive = 0, n_negative = 0;
 
   if ((from > 0 && to > 0) || (from < 0 && to < 0)) return 0;
   for (int k = 0; k < 3; k++) {
     const double side = vg_orient3d(a, b, x[k], x[(k + 1) % 3]);
 
-    if (side == 0) return -1;
     n_positive += side > 0;
+    n_negative += side < 0;
   }
-  if (n_positive % 3) return 0;
-  return from == 0 || to == 0 ? -1 : 1;
+  if (n_positive && n_negative) return 0;
+  return n_positive + n_negative < 3 || from == 0 || to == 0 ? -1 : 1;
 }
 
 double vg_line_at(const double *const x[3], const double *a, const double *b)

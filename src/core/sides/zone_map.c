@@ -253,10 +253,11 @@ static vg_status not_closed(const struct work *w, size_t i,
              "%g) to (%g, %g, %g); close the hole there, or",
              n, a[0], a[1], a[2], b[0], b[1], b[2]);
   else
-    snprintf(why, sizeof why,
-             "it ends on a baffle or sheet around which the fluid is "
-             "connected; name the patches that close the zone as interfaces, "
-             "or");
+    snprintf(
+      why, sizeof why,
+      "it ends on a baffle or sheet around which the fluid is "
+      "connected; name the patches that close the zone in zone_interfaces, "
+      "or");
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "interface %d%s%s encloses no zone: the same fluid is on both "
                  "sides of its triangle at (%g, %g, %g); %s make it a sheet",

@@ -12,7 +12,7 @@
 int vg_boundary_wants_inner(const struct vg_boundary *b)
 {
   const struct vg_settings *s = &b->read->settings;
-  int wants = *s->baffles || *s->sheets || *s->interfaces;
+  int wants = *s->baffles || *s->sheets || *s->zone_interfaces;
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role > VG_PATCH_WALL;
@@ -22,9 +22,9 @@ int vg_boundary_wants_inner(const struct vg_boundary *b)
 const char *vg_inner_source(const struct vg_settings *s, char *text,
                             size_t size)
 {
-  const char *const name[] = { "baffles ", "sheets ", "interfaces ",
+  const char *const name[] = { "baffles ", "sheets ", "zone_interfaces ",
                                "the table patches" };
-  const char *const list[] = { s->baffles, s->sheets, s->interfaces, "" };
+  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "" };
   int has_role = 0;
   size_t n = 0;
 
@@ -87,8 +87,8 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     give_list(m, "baffles", s->baffles, VG_PATCH_BAFFLE, on, role, from, err));
   VG_TRY(
     give_list(m, "sheets", s->sheets, VG_PATCH_SHEET, on, role, from, err));
-  VG_TRY(give_list(m, "interfaces", s->interfaces, VG_PATCH_INTERFACE, on, role,
-                   from, err));
+  VG_TRY(give_list(m, "zone_interfaces", s->zone_interfaces, VG_PATCH_INTERFACE,
+                   on, role, from, err));
   for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
     const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
 

@@ -251,7 +251,7 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   const struct vg_surface_report *r = &b->check;
   uint8_t *on = vg_calloc(m->n_patch, 1), *is_sheet = vg_calloc(m->n_tri, 1);
   const struct vg_settings *s = &b->read->settings;
-  const int has_list = *s->baffles || *s->sheets || *s->interfaces;
+  const int has_list = *s->baffles || *s->sheets || *s->zone_interfaces;
   char list[48] = "";
 
   for (size_t i = 0; on && i < r->n_defect; i++)

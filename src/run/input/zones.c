@@ -69,7 +69,7 @@ static vg_status take_row(const struct vg_settings *s, size_t i,
                    "zones: the seed points of %s (%g, %g, %g) and %s (%g, %g, "
                    "%g) are in one zone, since no interface separates them; "
                    "remove one of the rows, or name the patches between the "
-                   "points in interfaces",
+                   "points in zone_interfaces",
                    q->name, q->seed[0], q->seed[1], q->seed[2], r->name,
                    r->seed[0], r->seed[1], r->seed[2]);
   }
@@ -135,11 +135,12 @@ vg_status vg_zones_check(const struct vg_boundary *b, struct vg_error *err)
   const struct vg_settings *s = &b->read->settings;
 
   if (!s->n_zone || b->zones) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT,
-                 "%s: the table zones names zones, but no patch is an "
-                 "interface; name the patches that enclose them in interfaces, "
-                 "or remove the table",
-                 b->read->files.stem);
+  return vg_fail(
+    err, VG_ERR_INPUT,
+    "%s: the table zones names zones, but no patch is an "
+    "interface; name the patches that enclose them in zone_interfaces, "
+    "or remove the table",
+    b->read->files.stem);
 }
 
 /* --- sizes ------------------------------------------------------------------
@@ -242,8 +243,8 @@ vg_status vg_boundary_add_zones(struct vg_boundary *b, struct vg_error *err)
   z = vg_calloc(1, sizeof *z);
   if (!z) return vg_fail_memory(err, "the zones");
   z->other = b->map;
-  VG_TRY(vg_zones_make(&b->read->settings, &b->surface, 1, &z->map, &z->hmax,
-                       err));
+  VG_TRY(
+    vg_zones_make(&b->read->settings, &b->surface, 1, &z->map, &z->hmax, err));
   add_sizes(b, z);
   note_zones(b, z);
   b->zones = z;

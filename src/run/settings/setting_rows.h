@@ -84,7 +84,7 @@ VG_TEXT_ROW(plain, sheets, VG_LIST_MAX, "sheets", "",
   .pattern = vg_patch_list_pattern, .help = "Patches that become named faces "
   "between cells, through which the mesh continues: actuator disks, wakes, "
   "planes for monitors, by number or name, as in 7,disk*")
-VG_TEXT_ROW(plain, interfaces, VG_LIST_MAX, "interfaces", "",
+VG_TEXT_ROW(plain, zone_interfaces, VG_LIST_MAX, "zone_interfaces", "",
   .topic = VG_TOPIC_SURFACE,
   .unit = "", .check = vg_patch_list_check,
   .pattern = vg_patch_list_pattern, .help = "Sheets that enclose zones of "

@@ -175,9 +175,10 @@ static const struct vg_param patch_columns[] = {
   { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "",
     .help = "Keep the borders of this patch when the surface is remeshed" },
   { "role", AT(role), .type = VG_PARAM_WORD, .words = role_words, .unit = "",
-    .help = "wall: fluid on one side; baffle, sheet, interface: an inner "
-            "surface, as in the settings baffles, sheets and interfaces; auto: "
-            "by these settings" },
+    .help =
+      "wall: fluid on one side; baffle, sheet, interface: an inner "
+      "surface, as in the settings baffles, sheets and zone_interfaces; auto: "
+      "by these settings" },
 };
 
 #undef AT

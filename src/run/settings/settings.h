@@ -40,7 +40,7 @@ struct vg_farfield_row {
 
 /** What a patch is in the mesh. */
 enum vg_patch_role {
-  VG_PATCH_AUTO, /* as by the lists `baffles`, `sheets`, `interfaces` */
+  VG_PATCH_AUTO, /* as by the lists `baffles`, `sheets`, `zone_interfaces` */
   VG_PATCH_WALL, /* part of the boundary, with fluid on one side */
   VG_PATCH_BAFFLE,
   VG_PATCH_SHEET,

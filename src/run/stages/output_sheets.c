@@ -35,7 +35,8 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   struct vg_error *err)
 {
   struct vg_foam_options options;
-  int wants = *s->sheets || *s->interfaces, holds = vg_outputs_need_sheets(o);
+  int wants = *s->sheets || *s->zone_interfaces,
+      holds = vg_outputs_need_sheets(o);
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role >= VG_PATCH_SHEET;

@@ -244,7 +244,7 @@ def test_zones():
     job.surface(np.concatenate([points, size / 4 + inner / 2]),
                 np.concatenate([triangles, len(points) + faces]),
                 np.concatenate([patches, np.full(len(faces), 20)]))
-    job.set(interfaces="20", flow="internal", layers=False)
+    job.set(zone_interfaces="20", flow="internal", layers=False)
     job.add("zones", name="core", x=size / 2, y=size / 2, z=size / 2,
             kind="porous")
     mesh = job.mesh()
