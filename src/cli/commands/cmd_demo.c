@@ -168,6 +168,34 @@ static vg_status add_sheets(const struct vg_mesh *sheet, struct vg_mesh *m,
   return VG_OK;
 }
 
+/* The patches of the mesh, with conditions: those of the surface, and both
+ * sides of baffles. */
+static vg_status list_patches(const struct vg_demo *d, struct vg_mesh *all,
+                              struct vg_error *err)
+{
+  int32_t id = (int32_t)(d->surface.n_patch + d->sheet.n_patch);
+  vg_status st;
+
+  VG_TRY(vg_mesh_copy(all, &d->surface, err));
+  for (size_t i = 0; i < d->sheet.n_patch; i++) {
+    const struct vg_patch *p = &d->sheet.patch[i];
+    char name[VG_NAME_MAX];
+
+    if (p->is_sheet) continue;
+    snprintf(name, sizeof name, "%.40s_back", p->name);
+    for (int side = 0; side < 2; side++) {
+      const size_t at = vg_mesh_add_patch(all, side ? ++id : p->id,
+                                          side ? name : p->name);
+
+      if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
+      all->patch[at].bc = all->patch[at].family = p->bc;
+      all->patch[at].bc_fun3d = p->bc_fun3d;
+    }
+  }
+done:
+  return st;
+}
+
 /* The recommended settings of the case. */
 static vg_status settings_of(const char *name, const struct vg_demo *demo,
                              struct vg_settings *s, struct vg_error *err)
@@ -256,7 +284,7 @@ static vg_status write_project(char *const path[3], const char *stem,
   char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
   struct vg_mesh surface = demo->surface; /* Borrowed. */
-  struct vg_mesh with_sheet = VG_MESH_INIT;
+  struct vg_mesh with_sheet = VG_MESH_INIT, all = VG_MESH_INIT;
   int has_layers;
   vg_status st;
 
@@ -274,13 +302,13 @@ static vg_status write_project(char *const path[3], const char *stem,
   }
   VG_TRY(settings_of(name, demo, &s, err));
   has_layers = set_layers(name, &s);
-  VG_TRY(write_files(stem, name, &surface, &demo->surface, &s,
+  VG_TRY(list_patches(demo, &all, err));
+  VG_TRY(write_files(stem, name, &surface, &all, &s,
                      has_layers ? layer_comment : NULL, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));
-  printf("%s: boundary conditions of %zu patches\n", path[1],
-         demo->surface.n_patch);
+  printf("%s: boundary conditions of %zu patches\n", path[1], all.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");
@@ -290,6 +318,7 @@ static vg_status write_project(char *const path[3], const char *stem,
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
   vg_mesh_release(&with_sheet);
+  vg_mesh_release(&all);
   vg_settings_release(&s);
   return st;
 }

@@ -208,6 +208,8 @@ vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
   VG_TRY(add_patch(d, "rotor", err));
   VG_TRY(add_patch(d, "blades", err));
   m->patch[0].is_sheet = m->patch[0].is_interface = 1;
+  m->patch[1].bc = m->patch[1].family = 4;
+  m->patch[1].bc_fun3d = 4000;
   add_cylinder(m, n, rows);
   for (int k = 0; k < 4; k++)
     add_blade(m, (k == 0) - (k == 2), (k == 1) - (k == 3), along, across);

@@ -84,6 +84,7 @@ struct vg_mesh {
   /* Zones: cells of each kind are in the order of their zones. */
   size_t n_zone;
   struct vg_zone *zone; /* [n_zone]; 0: all cells are one nameless zone */
+  int is_resorted; /* 1: the cells of a file were not in the order of zones */
 };
 #define VG_MESH_INIT                                                           \
   {                                                                            \

@@ -33,6 +33,21 @@ uint64_t vg_mesh_zone_start(const struct vg_mesh *m, size_t z, int kind)
   return n;
 }
 
+vg_status vg_mesh_zone_numbers(const struct vg_mesh *m, int32_t **id,
+                               struct vg_error *err)
+{
+  int32_t *to;
+
+  *id = NULL;
+  if (!m->n_zone) return VG_OK;
+  *id = to = vg_alloc(m->n_tet + m->n_pyr + m->n_pri + m->n_hex, sizeof *to);
+  if (!to) return vg_fail_memory(err, "the zones");
+  for (int k = 0; k < VG_ZONE_KINDS; k++)
+    for (size_t z = 0; z < m->n_zone; z++)
+      for (uint64_t n = m->zone[z].n_cell[k]; n; n--) *to++ = m->zone[z].id;
+  return VG_OK;
+}
+
 uint64_t vg_mesh_zone_cells(const struct vg_mesh *m, size_t z)
 {
   const uint64_t *n = m->zone[z].n_cell;
@@ -79,6 +94,7 @@ vg_status vg_mesh_sort_zones(struct vg_mesh *m, const uint32_t *of,
     return vg_fail_memory(err, "the zones");
   }
   for (int k = 0; k < VG_ZONE_KINDS; of += n[k++]) {
+    for (size_t c = 1; c < n[k]; c++) m->is_resorted |= of[c] < of[c - 1];
     for (size_t z = 0; z < m->n_zone; z++) m->zone[z].n_cell[k] = 0;
     for (size_t c = 0; c < n[k]; c++) m->zone[of[c]].n_cell[k]++;
     for (size_t z = 0; z < m->n_zone; z++) at[z] = vg_mesh_zone_start(m, z, k);

@@ -36,10 +36,16 @@ static inline void vg_mesh_zone_walk(const struct vg_mesh *m, int kind,
   while (cell >= *end && *z + 1 < m->n_zone) *end += m->zone[++*z].n_cell[kind];
 }
 
+/** *id: numbers of the zones of all cells, in the order of kinds, to be freed;
+ * NULL without zones. O(n). VG_ERR_MEMORY. */
+vg_status vg_mesh_zone_numbers(const struct vg_mesh *m, int32_t **id,
+                               struct vg_error *err);
+
 /** Cells of all kinds in zone z. */
 uint64_t vg_mesh_zone_cells(const struct vg_mesh *m, size_t z);
 
 /** Sort the cells of each kind by their zones, stably, and count them.
+ * is_resorted of m becomes 1 if this changes their order.
  * @param of  zone of each cell, < m->n_zone: tetrahedra, pyramids, prisms,
  *            hexahedra
  * O(n). VG_ERR_MEMORY: m is unchanged. */

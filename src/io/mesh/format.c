@@ -107,26 +107,15 @@ static vg_status write_cogsg(const char *path, const struct vg_mesh *m,
 static vg_status write_vtu(const char *path, const struct vg_mesh *m,
                            struct vg_error *err)
 {
-  const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
   struct vg_vtu_field zone = { VG_VTU_ZONE, VG_VTU_CELL, VG_VTU_INT32, 1,
                                NULL };
-  int32_t *id, *to;
+  int32_t *id = NULL;
   vg_status st;
 
-  if (!m->n_zone) return vg_vtu_write(path, m, NULL, 0, err);
-  id = to = vg_alloc(n[0] + n[1] + n[2] + n[3], sizeof *id);
-  if (!id) return vg_fail_memory(err, "the zones");
-  for (int k = 0; k < VG_ZONE_KINDS; k++) {
-    uint64_t end = 0;
-    size_t z = 0;
-
-    for (size_t c = 0; c < n[k]; c++) {
-      vg_mesh_zone_walk(m, k, c, &z, &end);
-      *to++ = m->zone[z].id;
-    }
-  }
+  VG_TRY(vg_mesh_zone_numbers(m, &id, err));
   zone.data = id;
-  st = vg_vtu_write(path, m, &zone, 1, err);
+  st = vg_vtu_write(path, m, &zone, id != NULL, err);
+done:
   free(id);
   return st;
 }

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Zones of cells, which interfaces enclose.
 needs tetgen
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 \
+  OMPI_MCA_hwloc_base_binding_policy=none \
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
+  PRTE_MCA_hwloc_default_binding_policy=none
 
 # shellcheck source=tests/cli/duct.bash
 . "$here/duct.bash"
@@ -76,7 +81,7 @@ zones "solid 0" >two.deck
 valid two --zone-interfaces rot,in
 lacks out "solid"
 says out "816"
-says out "   in"
+says out "0.0625  in;"
 sed 's/solid 0 auto/solid 0 yes/' two.deck >t && mv t two.deck
 valid two --zone-interfaces rot,in
 says out "solid"
@@ -138,7 +143,7 @@ done
 # --- formats ---------------------------------------------------------------------
 
 vanguard mesh two.stl --flow internal --quiet --zone-interfaces rot,in --hmax 0.12 \
-  --write b8.ugrid,msh,meshb,fluent.msh,vtu,su2,foam --out all
+  --write b8.ugrid,msh,mesh,meshb,fluent.msh,vtu,su2,foam --out all
 exits 0
 vanguard check --json all/two.b8.ugrid
 exits 0
@@ -172,11 +177,25 @@ exits 0
 says out "has no zones"
 
 # Parts of a solver.
-vanguard partition all/two.b8.ugrid -n 2 --write msh --out part
+vanguard partition all/two.msh -n 2 --write vtu,part --out part
 exits 0
-vanguard check part.msh
-exits 0
-says out "  rotor"
+grep -qa 'Name="zone"' part.vtu || fail "a .vtu of parts without zones"
+sed 's/^zone [0-9]* /zone 0 /; s/ rotating / fluid /; s/ porous / fluid /' \
+  all/two.sheets >want
+sed 's/^zone [0-9]* /zone 0 /' part.sheets | is want
+
+# Cells that are not together in the file: in another order there.
+if command -v gmsh >/dev/null; then
+  awk '$1 == "Tetrahedra" { n = 1 } n && NF == 5 { $5 = 1 + (i++ % 2) } { print }' \
+    all/two.mesh >mixed.mesh
+  vanguard partition mixed.mesh -n 2 --write part --out no
+  exits 1
+  says err "cells of its zones are not together"
+  vanguard convert mixed.mesh sorted.mesh
+  exits 0
+  vanguard partition sorted.mesh -n 2 --write part --out sorted
+  exits 0
+fi
 
 # CGNS: a region and a family for each zone.
 vanguard convert all/two.b8.ugrid c.cgns
@@ -267,8 +286,11 @@ refused "is a sheet by sheets, and an interface by zone_interfaces" --sheets in 
   --zone-interfaces rot,in
 refused "layers are requested on patch 7 rot, but it is an interface" \
   --zone-interfaces rot,in --walls 'w*,rot' --first 0.004
-refused "none of these formats holds sheets" --zone-interfaces rot,in \
-  --write cogsg
+vanguard mesh two.stl --flow internal --zone-interfaces rot,in --write cogsg \
+  --out no
+exits 1
+says err "none of these formats holds sheets"
+absent no
 
 # A damaged sidecar.
 sed 's/^zone 2 rotating/zone 2 warm/' all/two.sheets >back.sheets
