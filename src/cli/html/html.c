@@ -47,6 +47,7 @@ static vg_status sections(struct page *p, struct vg_error *err)
   vg_html_quality(p);
   vg_html_worst(p);
   vg_html_volumes(p);
+  vg_html_zones(p);
   vg_html_settings(p);
   vg_html_patches(p);
   vg_html_partition(p);

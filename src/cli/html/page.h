@@ -102,6 +102,7 @@ void vg_html_cuts(struct page *p);
 void vg_html_layers(struct page *p);
 void vg_html_quality(struct page *p);
 void vg_html_volumes(struct page *p);
+void vg_html_zones(struct page *p);
 void vg_html_worst(struct page *p);
 void vg_html_settings(struct page *p);
 void vg_html_patches(struct page *p);

@@ -38,22 +38,22 @@ enum { VG_INNER_NOT, VG_INNER_FRONT, VG_INNER_BACK };
 
 /** A named part of the boundary. */
 struct vg_patch {
-  int32_t id;             /* number in the files; any value, unique */
-  int32_t bc;             /* USM3D code (formats.md 1.4), or VG_BC_NONE */
-  int32_t bc_fun3d;       /* FUN3D code, or VG_BC_NONE */
-  int32_t family;         /* VGRID family column; equal to bc if unknown */
-  int32_t inner;          /* VG_INNER_...: side of an inner surface; its other
-                             side has the same triangles, reversed */
-  int32_t is_sheet;       /* 1: an inner surface through which the mesh is
-                             connected (core/mesh/sheets.h); VG_SHEET_GONE: a
-                             patch without triangles that goes away with the
-                             sheets */
-  int32_t is_interface;   /* 1: a sheet that separates zones, or a wall between a
-                             zone and one without cells */
+  int32_t id;           /* number in the files; any value, unique */
+  int32_t bc;           /* USM3D code (formats.md 1.4), or VG_BC_NONE */
+  int32_t bc_fun3d;     /* FUN3D code, or VG_BC_NONE */
+  int32_t family;       /* VGRID family column; equal to bc if unknown */
+  int32_t inner;        /* VG_INNER_...: side of an inner surface; its other
+                           side has the same triangles, reversed */
+  int32_t is_sheet;     /* 1: an inner surface through which the mesh is
+                           connected (core/mesh/sheets.h); VG_SHEET_GONE: a
+                           patch without triangles that goes away with the
+                           sheets */
+  int32_t is_interface; /* 1: a sheet that separates zones, or a wall between a
+                           zone and one without cells */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 
-/* What the cells of a zone are to a solver. */
+/* Kinds of zones. */
 enum { VG_ZONE_FLUID, VG_ZONE_ROTATING, VG_ZONE_POROUS, VG_ZONE_SOLID };
 
 /** A named part of the cells (core/mesh/zones.h). */

@@ -137,16 +137,6 @@ static vg_status read_families(struct vg_cgns_reader *r, int64_t base,
   return st;
 }
 
-const struct vg_cgns_family *vg_cgns_find_family(const struct vg_cgns_reader *r,
-                                                 const char *name)
-{
-  struct vg_cgns_family key = { .name = "" };
-
-  if (!r->n_family) return NULL;
-  snprintf(key.name, sizeof key.name, "%.*s", VG_CGNS_NAME - 1, name);
-  return bsearch(&key, r->family, r->n_family, sizeof key, by_name);
-}
-
 /* Find or create the patch with this name. condition "" means that of the
  * family with the same name. */
 vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
@@ -484,19 +474,6 @@ static uint32_t *next_element(struct vg_cgns_reader *r, enum element e,
 #undef NEXT
 }
 
-/* Notes the region of a cell. Returns nonzero without memory. */
-static int take_tag(struct vg_cgns_reader *r, enum element e, int32_t tag)
-{
-  const struct vg_mesh *m = &r->soup.m;
-  const size_t n[VG_CGNS_N_ELEMENT] = { 0,        0,        0,       m->n_tet,
-                                        m->n_pyr, m->n_pri, m->n_hex };
-
-  if (vg_reserve(&r->tag[e], &r->cap_tag[e], n[e] + 1, sizeof **r->tag))
-    return -1;
-  r->tag[e][n[e]] = tag;
-  return 0;
-}
-
 /* patch: of a face; tag: of a cell */
 static vg_status take_element(struct vg_cgns_reader *r,
                               const struct vg_cgns_section *s,
@@ -517,7 +494,7 @@ static vg_status take_element(struct vg_cgns_reader *r,
   }
   if (t->element == PASSED) return VG_OK;
   if (t->element == TRI) return vg_soup_triangle(&r->soup, node, patch, err);
-  if (t->element > QUAD && take_tag(r, t->element, tag))
+  if (t->element > QUAD && vg_cgns_take_tag(r, t->element, tag))
     return vg_fail_memory(err, "the zones");
   to = next_element(r, t->element, patch);
   if (!to) return vg_fail_memory(err, "the elements");

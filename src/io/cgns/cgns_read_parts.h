@@ -14,7 +14,7 @@ enum { VG_CGNS_N_ELEMENT = 7 };
 struct vg_cgns_family {
   char name[VG_CGNS_NAME], condition[VG_CGNS_NAME];
   char number[VG_CGNS_NAME]; /* of its patch, if Vanguard wrote it; or "" */
-  char kind[VG_CGNS_NAME];   /* of its zone, likewise */
+  char kind[VG_CGNS_NAME];   /* of its zone; or "" */
 };
 
 /* Cells of a region, elements first to last of a zone. */
@@ -107,6 +107,10 @@ vg_status vg_cgns_make_zones(struct vg_cgns_reader *r, struct vg_error *err);
  * element before. */
 int32_t vg_cgns_region_of(const struct vg_cgns_reader *r, int64_t element,
                           size_t *hint);
+
+/** Note the region of the next cell, of the kind element < VG_CGNS_N_ELEMENT
+ * (cgns_read.c). Returns nonzero without memory. */
+int vg_cgns_take_tag(struct vg_cgns_reader *r, int element, int32_t region);
 
 /** The family of this name, or NULL. */
 const struct vg_cgns_family *vg_cgns_find_family(const struct vg_cgns_reader *r,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Zones of cells in a CGNS file: a ZoneSubRegion_t with a range of cells, or a
- * Zone_t among several. */
+/* Families, and zones of cells in a CGNS file: a ZoneSubRegion_t with a range
+ * of cells, or a Zone_t among several. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,22 @@
 #include "io/cgns/cgns_read_parts.h"
 #include "io/stream/convention.h"
 #include "io/stream/stream.h"
+
+static int by_name(const void *a, const void *b)
+{
+  return strcmp(((const struct vg_cgns_family *)a)->name,
+                ((const struct vg_cgns_family *)b)->name);
+}
+
+const struct vg_cgns_family *vg_cgns_find_family(const struct vg_cgns_reader *r,
+                                                 const char *name)
+{
+  struct vg_cgns_family key = { .name = "" };
+
+  if (!r->n_family) return NULL;
+  snprintf(key.name, sizeof key.name, "%.*s", VG_CGNS_NAME - 1, name);
+  return bsearch(&key, r->family, r->n_family, sizeof key, by_name);
+}
 
 static vg_status add_region(struct vg_cgns_reader *r,
                             const char name[VG_CGNS_NAME], int64_t first,
@@ -88,6 +105,19 @@ int32_t vg_cgns_region_of(const struct vg_cgns_reader *r, int64_t element,
   return *hint < r->n_region && r->region[*hint].first <= element
          ? (int32_t)*hint + 1
          : 0;
+}
+
+int vg_cgns_take_tag(struct vg_cgns_reader *r, int element, int32_t region)
+{
+  const struct vg_mesh *m = &r->soup.m;
+  const size_t n[VG_CGNS_N_ELEMENT] = { 0,        0,        0,       m->n_tet,
+                                        m->n_pyr, m->n_pri, m->n_hex };
+
+  if (vg_reserve(&r->tag[element], &r->cap_tag[element], n[element] + 1,
+                 sizeof **r->tag))
+    return -1;
+  r->tag[element][n[element]] = region;
+  return 0;
 }
 
 /* Numbers that the families record, if they are ascending. */

@@ -148,6 +148,8 @@ exits 0
 vanguard check --json all/two.b8.ugrid
 exits 0
 says out '"kind": "rotating"'
+grep -q '<td>rotor</td><td>rotating</td>' all/two.report.html ||
+  fail "the page has no zones"
 for form in msh meshb; do
   vanguard check all/two.$form
   exits 0
