@@ -2,7 +2,7 @@
 #include "core/judge/zone_quality.h"
 
 #include <assert.h>
-#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -18,8 +18,9 @@ struct sums {
 
 struct vg_zone_quality {
   const struct vg_mesh *m; /* borrowed */
-  pthread_mutex_t lock;
-  struct sums *sums; /* [n_zone], guarded by lock */
+  atomic_flag
+    busy; /* spin lock of the sums, while those of a slice are added */
+  struct sums *sums; /* [n_zone] */
 };
 
 vg_status vg_zone_quality_new(const struct vg_mesh *m,
@@ -40,7 +41,7 @@ vg_status vg_zone_quality_new(const struct vg_mesh *m,
     return vg_fail_memory(err, "the zones");
   }
   for (size_t z = 0; z < m->n_zone; z++) q->sums[z].angle_min = 180;
-  pthread_mutex_init(&q->lock, NULL);
+  atomic_flag_clear(&q->busy);
   *out = q;
   return VG_OK;
 }
@@ -48,7 +49,6 @@ vg_status vg_zone_quality_new(const struct vg_mesh *m,
 void vg_zone_quality_free(struct vg_zone_quality *q)
 {
   if (!q) return;
-  pthread_mutex_destroy(&q->lock);
   free(q->sums);
   free(q);
 }
@@ -68,6 +68,20 @@ static void add_run(const struct vg_slice *slice, int kind, size_t first,
   }
 }
 
+static void merge(struct vg_zone_quality *q, size_t z, const struct sums *more)
+{
+  struct sums *to = &q->sums[z];
+
+  while (atomic_flag_test_and_set(&q->busy)) {
+  }
+  to->n_cell += more->n_cell;
+  for (int i = 0; i < VG_EXACT_LIMBS; i++)
+    to->volume.limb[i] += more->volume.limb[i];
+  to->volume.n_odd += more->volume.n_odd;
+  if (more->angle_min < to->angle_min) to->angle_min = more->angle_min;
+  atomic_flag_clear(&q->busy);
+}
+
 /* Runs of cells of one zone. */
 static void add_kind(struct vg_zone_quality *q, const struct vg_slice *slice,
                      int kind, const float *angle)
@@ -76,14 +90,15 @@ static void add_kind(struct vg_zone_quality *q, const struct vg_slice *slice,
   size_t c = 0;
 
   for (size_t z = 0; z < q->m->n_zone && c < slice->n_cell[kind]; z++) {
+    struct sums sums = { .angle_min = 180 };
     size_t n;
 
     end += q->m->zone[z].n_cell[kind];
     if (end <= slice->cell_at[kind] + c) continue;
     n = (size_t)(end - slice->cell_at[kind]) - c;
     if (n > slice->n_cell[kind] - c) n = slice->n_cell[kind] - c;
-    add_run(slice, kind, c, n, kind == VG_SLICE_TET ? angle : NULL,
-            &q->sums[z]);
+    add_run(slice, kind, c, n, kind == VG_SLICE_TET ? angle : NULL, &sums);
+    merge(q, z, &sums);
     c += n;
   }
 }
@@ -103,10 +118,8 @@ vg_status vg_zone_quality_add(struct vg_zone_quality *q,
   angle = vg_alloc(tets.n_tet, sizeof *angle);
   if (!angle) return vg_fail_memory(err, "the zones");
   vg_mesh_cell_quality(&tets, angle, NULL);
-  pthread_mutex_lock(&q->lock);
   for (int kind = 0; kind < VG_SLICE_KINDS; kind++)
     add_kind(q, slice, kind, angle);
-  pthread_mutex_unlock(&q->lock);
   free(angle);
   return VG_OK;
 }

@@ -12,7 +12,7 @@
 #include "core/mesh/edges.h"
 #include "core/sides/inner.h"
 #include "run/input/shape_parts.h"
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
 

@@ -22,7 +22,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 #include "run/input/mesh_unit.h"
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"

@@ -11,7 +11,7 @@
 #include "io/vgrid/mapbc.h"
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 #include "run/settings/deck.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/copies.h"
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 
 /* Sides of an interface on which there are cells. */
 enum { NO_SIDE = 1, ONE_SIDE = 2, BOTH_SIDES = 4 };

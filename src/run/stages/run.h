@@ -127,12 +127,12 @@ vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
 /** The mesh as it is written. */
 const struct vg_slices *vg_run_slices(const struct vg_run *r);
 
-/** run/stages/zones.c: sorts the cells of r->slices by zones, if the surface
- * has interfaces. Collective. */
+/** run/stages/run_zones.c: sorts the cells of r->slices by zones, if the
+ * surface has interfaces. Collective. */
 vg_status vg_run_sort_zones(struct vg_run *r, const struct vg_problem *p,
                             struct vg_error *err);
 
-/** run/stages/zones.c: the figures of the zones in q, in r->zone_report.
+/** run/stages/run_zones.c: the figures of the zones in q, in r->zone_report.
  * Collective. */
 vg_status vg_run_judge_zones(struct vg_run *r, const struct vg_zone_quality *q,
                              struct vg_error *err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 
 #include <assert.h>
 #include <math.h>

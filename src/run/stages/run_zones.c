@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "run/input/zones.h"
+#include "run/input/zone_table.h"
 #include "run/stages/run.h"
 
 vg_status vg_run_sort_zones(struct vg_run *r, const struct vg_problem *p,

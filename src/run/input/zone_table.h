@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* run/input/zones.h: zones of cells, from the interfaces of the closed surface
- * and the table `zones`. */
-#ifndef VG_RUN_INPUT_ZONES_H
-#define VG_RUN_INPUT_ZONES_H
+/* run/input/zone_table.h: zones of cells, from the interfaces of the closed
+ * surface and the table `zones`. */
+#ifndef VG_RUN_INPUT_ZONE_TABLE_H
+#define VG_RUN_INPUT_ZONE_TABLE_H
 
 #include "core/sides/zone_map.h"
 #include "run/input/input.h"
