@@ -617,7 +617,6 @@ static vg_status take_inner(struct inner_faces *q, struct vg_error *err)
   m->sheet_of = vg_alloc(n, sizeof *m->sheet_of);
   m->sheet = vg_alloc(m->n_patch, sizeof *m->sheet);
   if (!m->sheet_tri || !m->sheet_of || !m->sheet) {
-    vg_mesh_drop_zones(m);
     vg_mesh_drop_sheets(m);
     return vg_fail_memory(err, "the faces between cells");
   }
@@ -682,6 +681,7 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->pri = NULL;
   m->hex = NULL;
   m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
+  vg_mesh_drop_zones(m);
   vg_mesh_drop_sheets(m);
   if (!new_index) return; /* keeping unused points is harmless */
   memset(new_index, 0xff, m->n_point * sizeof *new_index);
