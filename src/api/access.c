@@ -7,6 +7,7 @@
 #include "base/helper/helper.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/mesh/zones.h"
 
 vg_status vg_job_meshed(vanguard_job *job)
 {
@@ -55,6 +56,7 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
   n.n_layer_hex = s->n_layer_cell[VG_SLICE_HEX];
   n.n_sheet_tri = s->boundary->n_sheet_tri;
   n.n_sheet = s->boundary->n_sheet;
+  n.n_zone = s->boundary->n_zone;
   return vg_job_status(vg_job_give(job, out, &n, sizeof n));
 }
 
@@ -138,6 +140,30 @@ const uint32_t *vanguard_sheet_numbers(const vanguard_job *job)
 {
   VG_JOB_ASK(job, NULL);
   return boundary_of(job)->sheet_of;
+}
+
+vanguard_status vanguard_zone(vanguard_job *job, size_t i,
+                              struct vanguard_zone *out)
+{
+  VG_JOB_CALL(job);
+  struct vanguard_zone z = { .struct_size = sizeof z };
+  vg_status st = vg_job_meshed(job);
+  const struct vg_mesh *m;
+
+  if (st < 0) return vg_job_status(st);
+  m = job->run.slices.boundary;
+  if (i >= m->n_zone)
+    return vg_job_status(vg_fail(&job->err, VG_ERR_USAGE,
+                                 "zone %zu was asked for; the mesh has %zu", i,
+                                 m->n_zone));
+  z.id = m->zone[i].id;
+  z.name = m->zone[i].name;
+  z.kind = vg_zone_kind_word[m->zone[i].kind];
+  z.n_tet = m->zone[i].n_cell[VG_SLICE_TET];
+  z.n_pyr = m->zone[i].n_cell[VG_SLICE_PYR];
+  z.n_pri = m->zone[i].n_cell[VG_SLICE_PRI];
+  z.n_hex = m->zone[i].n_cell[VG_SLICE_HEX];
+  return vg_job_status(vg_job_give(job, out, &z, sizeof z));
 }
 
 /* --- figures ------------------------------------------------------------- */

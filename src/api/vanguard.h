@@ -448,7 +448,8 @@ VANGUARD_API vanguard_status vanguard_report(vanguard_job *job,
 
 /** Size of the whole mesh; the same on every rank. Boundary points come first,
  * followed by the other layer points. Within each kind of cell, layer cells
- * come first. */
+ * come first, except in a mesh with zones, in which n_layer_tet and the like
+ * are 0. */
 struct vanguard_counts {
   size_t struct_size;
   uint64_t n_point, n_tet, n_pyr, n_pri;
@@ -460,6 +461,7 @@ struct vanguard_counts {
   uint64_t n_hex, n_layer_hex;
   uint64_t n_sheet_tri; /* faces of sheets, each between two cells */
   size_t n_sheet;
+  size_t n_zone; /* 0: all cells are one zone without a name */
 };
 VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
                                             struct vanguard_counts *out);
@@ -482,6 +484,18 @@ VANGUARD_API vanguard_status vanguard_sheet(vanguard_job *job, size_t i,
                                             struct vanguard_patch *out);
 VANGUARD_API const uint32_t *vanguard_sheet_triangles(const vanguard_job *job);
 VANGUARD_API const uint32_t *vanguard_sheet_numbers(const vanguard_job *job);
+
+/** A zone of cells, which interfaces enclose. Cells of each kind are in the
+ * order of the zones: the first n_tet tetrahedra are in zone 0, and so on. */
+struct vanguard_zone {
+  size_t struct_size;
+  int32_t id;
+  const char *name; /* may be "" */
+  const char *kind; /* "fluid", "rotating", "porous" or "solid" */
+  uint64_t n_tet, n_pyr, n_pri, n_hex;
+};
+VANGUARD_API vanguard_status vanguard_zone(vanguard_job *job, size_t i,
+                                           struct vanguard_zone *out);
 
 /** Copy the whole mesh into arrays of the caller: xyz [n_point][3],
  * tet [n_tet][4], pyr [n_pyr][5] and pri [n_pri][6]. Arrays that are NULL are

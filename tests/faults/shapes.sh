@@ -17,6 +17,15 @@ finned() {
   printf 'f %s\n' "1 3 7" "1 7 8"
 }
 
+# The same around a smaller one.
+nested() {
+  octahedron
+  printf 'v %s\n' "0.4 0 0" "-0.4 0 0" "0 0.4 0" "0 -0.4 0" "0 0 0.4" "0 0 -0.4"
+  echo "g in"
+  printf 'f %s\n' "7 9 11" "9 8 11" "8 10 11" "10 7 11" "9 7 12" "8 9 12" \
+    "10 8 12" "7 10 12"
+}
+
 # The octahedron as STL with defects: a triangle is missing, one is reversed, and one
 # is there twice.
 defects() {

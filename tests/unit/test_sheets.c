@@ -198,7 +198,9 @@ static void damaged_files_are_refused(void **state)
   io_make_t1(&m, 1); /* 4 points, 1 cell */
   refuse(&m, "sheet 9 1", "the word mesh is expected");
   refuse(&m, "mesh 4 x", "the number of cells");
-  refuse(&m, "mesh 4 1\nfan 1", "the word sheet is expected");
+  refuse(&m, "mesh 4 1\nfan 1",
+         "the word sheet, interface or zone is "
+         "expected");
   refuse(&m, "mesh 4 1\nsheet 9 2 a\n1 2 3\n1 2", "");
   refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 5\n", "point 5 does not exist");
   refuse(&m, "mesh 4 1\nsheet 9 1 a\n1 2 0\n", "point 0 does not exist");

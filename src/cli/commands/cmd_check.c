@@ -166,6 +166,7 @@ struct findings {
   const struct vg_read_info *info;
   struct vg_mesh_report quality;
   struct vg_sheet_report *sheets; /* [m->n_sheet] */
+  struct vg_zone_report *zones;   /* [m->n_zone] */
   int has_accuracy;
   struct vg_accuracy_report accuracy;
 };
@@ -173,7 +174,10 @@ struct findings {
 /* The setting for inner surfaces that was given in vain, or NULL. */
 static const char *inner_setting(const struct vg_problem *p)
 {
-  return *p->asked.baffles ? "baffles" : *p->asked.sheets ? "sheets" : NULL;
+  return *p->asked.baffles         ? "baffles"
+       : *p->asked.sheets          ? "sheets"
+       : *p->asked.zone_interfaces ? "zone_interfaces"
+                                   : NULL;
 }
 
 static void put_json(const struct arguments *a, const struct vg_problem *p,
@@ -191,6 +195,8 @@ static void put_json(const struct arguments *a, const struct vg_problem *p,
 
   if (f->sheets)
     json_object_set_new(o, "sheets", vg_report_sheets_json(f->m, f->sheets));
+  if (f->zones)
+    json_object_set_new(o, "zones", vg_report_zones_json(f->m, f->zones));
   if (f->has_accuracy)
     json_object_set_new(o, "accuracy",
                         vg_report_accuracy_json(&f->accuracy, f->m));
@@ -212,6 +218,7 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   if (vg_report_patches_text(stdout, f->m, NULL) < 0)
     return vg_fail_memory(err, "the patches");
   vg_report_sheets_text(stdout, f->m, f->sheets);
+  vg_report_zones_text(stdout, f->m, f->zones);
   if (turned->cell)
     printf("  cells of negative volume, mirrored on reading: %zu\n",
            turned->cell);
@@ -226,6 +233,25 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   return VG_OK;
 }
 
+/* Every triangle of an interface lies between two zones. */
+static vg_status check_interfaces(const struct arguments *a,
+                                  const struct vg_mesh *m,
+                                  struct vg_mesh_report *r,
+                                  struct vg_error *err)
+{
+  double x[3];
+  size_t n;
+  vg_status st = vg_interfaces_judge(m, &n, x, err);
+
+  if (st < 0 || !n) return st;
+  r->is_valid = 0;
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the mesh is not valid: %zu triangles of interfaces have "
+                 "one zone on both sides, the first one at (%g, %g, %g); write "
+                 "the zones and interfaces again from the mesh they belong to",
+                 a->one.file, n, x[0], x[1], x[2]);
+}
+
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                             const struct vg_mesh *m,
                             const struct vg_read_info *info,
@@ -238,11 +264,13 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
 
   VG_TRY(judge(a, p, m, &f.quality, err));
   VG_TRY(vg_sheet_sides_judge(m, &f.sheets, err));
+  VG_TRY(vg_zone_quality_judge(m, &f.zones, err));
   if (a->with_accuracy && r->is_valid) {
     VG_TRY(vg_check_accuracy(&p->asked, m, &f.accuracy, err));
     f.has_accuracy = 1;
   }
   if (!r->is_valid) st = not_valid(a, &info->turned, err);
+  else st = check_interfaces(a, m, &f.quality, err);
   *a->missed = vg_mesh_limits_missed(&p->asked, r, limit) > 0;
   if (a->one.json) put_json(a, p, &f, err);
   else if (put_text(a, p, &f, err) < 0) st = VG_ERR_MEMORY;
@@ -251,6 +279,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   vg_report_mesh_limits_text(stderr, &p->asked, r);
 done:
   free(f.sheets);
+  free(f.zones);
   vg_accuracy_release(&f.accuracy);
   return st;
 }

@@ -243,9 +243,18 @@ static void note_mesh(struct conversion *c)
     vg_note(&c->notes,
             ".%s has no faces between cells: %zu triangles of sheets are lost",
             c->suffix, m->n_sheet_tri);
+  if (m->n_zone && !c->sheets &&
+      (!(c->what & CELLS) || !vg_format_holds_sheets(c->suffix)))
+    vg_note(&c->notes, ".%s has no zones: %zu are lost", c->suffix, m->n_zone);
+  if (m->is_resorted)
+    vg_note(&c->notes, "cells were sorted by zones, of which each is together");
   if (m->n_sheet && (!strcmp(c->suffix, "mesh") || !strcmp(c->suffix, "meshb")))
     vg_note(&c->notes, ".%s has no names: those of %zu sheets are lost",
             c->suffix, m->n_sheet);
+  if (m->n_zone && (!strcmp(c->suffix, "mesh") || !strcmp(c->suffix, "meshb")))
+    vg_note(&c->notes,
+            ".%s has neither names nor kinds of zones: those of %zu are lost",
+            c->suffix, m->n_zone);
   if (c->sheets)
     vg_note(&c->notes,
             ".%s has no faces between cells: %zu triangles of sheets are in %s",

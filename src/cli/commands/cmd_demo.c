@@ -124,32 +124,47 @@ static vg_status ask_for_boom(const struct vg_mach_extent *e,
   return vg_settings_add(s, VG_TABLE_SOURCES, &source, err);
 }
 
-/* The role of the sheet, and its name, which a .ugrid does not hold. */
-static vg_status ask_for_sheet(const struct vg_mesh *m, struct vg_settings *s,
-                               struct vg_error *err)
+/* The roles of the sheets, and their names, which a .ugrid does not hold; the
+ * rotating zone. */
+static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
+                                struct vg_error *err)
 {
   struct vg_patch_row row;
+  struct vg_zone_row zone;
+  vg_status st = VG_OK;
 
-  if (!m->n_patch) return VG_OK;
-  vg_settings_row_default(VG_TABLE_PATCHES, &row);
-  row.id = m->patch[0].id;
-  row.role = VG_PATCH_SHEET;
-  snprintf(row.name, sizeof row.name, "%s", m->patch[0].name);
-  return vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
+  for (size_t i = 0; i < d->sheet.n_patch && st >= 0; i++) {
+    const struct vg_patch *p = &d->sheet.patch[i];
+
+    vg_settings_row_default(VG_TABLE_PATCHES, &row);
+    row.id = p->id;
+    row.role = p->is_interface ? VG_PATCH_INTERFACE
+             : p->is_sheet     ? VG_PATCH_SHEET
+                               : VG_PATCH_BAFFLE;
+    snprintf(row.name, sizeof row.name, "%s", p->name);
+    st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
+  }
+  if (st < 0 || !*d->zone.name) return st;
+  vg_settings_row_default(VG_TABLE_ZONES, &zone);
+  snprintf(zone.name, sizeof zone.name, "%s", d->zone.name);
+  zone.kind = d->zone.kind;
+  memcpy(zone.seed, d->seed, sizeof zone.seed);
+  return vg_settings_add(s, VG_TABLE_ZONES, &zone, err);
 }
 
-/* Adds the sheet to the surface. */
-static vg_status add_sheet(const struct vg_mesh *sheet, struct vg_mesh *m,
-                           struct vg_error *err)
+/* Adds the sheets to the surface. */
+static vg_status add_sheets(const struct vg_mesh *sheet, struct vg_mesh *m,
+                            struct vg_error *err)
 {
   const size_t n_point = m->n_point + sheet->n_point;
-  const size_t n_tri = m->n_tri + sheet->n_tri;
-  size_t cap[3] = { m->n_point, m->n_tri, m->n_tri }, patch;
+  const size_t n_tri = m->n_tri + sheet->n_tri, n_patch = m->n_patch;
+  size_t cap[3] = { m->n_point, m->n_tri, m->n_tri };
 
-  if (!sheet->n_tri) return VG_OK;
-  patch = vg_mesh_add_patch(m, sheet->patch[0].id, sheet->patch[0].name);
-  if (patch == SIZE_MAX ||
-      vg_reserve(&m->point, &cap[0], n_point, sizeof *m->point) ||
+  for (size_t i = 0; i < sheet->n_patch; i++)
+    if (vg_mesh_add_patch(m, sheet->patch[i].id, sheet->patch[i].name) ==
+        SIZE_MAX)
+      return vg_fail_memory(err, "the sheet");
+  if (vg_reserve(&m->point, &cap[0], n_point, sizeof *m->point) ||
       vg_reserve(&m->tri, &cap[1], n_tri, sizeof *m->tri) ||
       vg_reserve(&m->tri_patch, &cap[2], n_tri, sizeof *m->tri_patch))
     return vg_fail_memory(err, "the sheet");
@@ -158,10 +173,38 @@ static vg_status add_sheet(const struct vg_mesh *sheet, struct vg_mesh *m,
   for (size_t t = 0; t < sheet->n_tri; t++, m->n_tri++) {
     for (int k = 0; k < 3; k++)
       m->tri[m->n_tri][k] = (uint32_t)m->n_point + sheet->tri[t][k];
-    m->tri_patch[m->n_tri] = (uint32_t)patch;
+    m->tri_patch[m->n_tri] = (uint32_t)n_patch + sheet->tri_patch[t];
   }
   m->n_point = n_point;
   return VG_OK;
+}
+
+/* The patches of the mesh, with conditions: those of the surface, and both
+ * sides of baffles. */
+static vg_status list_patches(const struct vg_demo *d, struct vg_mesh *all,
+                              struct vg_error *err)
+{
+  int32_t id = (int32_t)(d->surface.n_patch + d->sheet.n_patch);
+  vg_status st;
+
+  VG_TRY(vg_mesh_copy(all, &d->surface, err));
+  for (size_t i = 0; i < d->sheet.n_patch; i++) {
+    const struct vg_patch *p = &d->sheet.patch[i];
+    char name[VG_NAME_MAX];
+
+    if (p->is_sheet) continue;
+    snprintf(name, sizeof name, "%.40s_back", p->name);
+    for (int side = 0; side < 2; side++) {
+      const size_t at = vg_mesh_add_patch(all, side ? ++id : p->id,
+                                          side ? name : p->name);
+
+      if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
+      all->patch[at].bc = all->patch[at].family = p->bc;
+      all->patch[at].bc_fun3d = p->bc_fun3d;
+    }
+  }
+done:
+  return st;
 }
 
 /* The recommended settings of the case. */
@@ -182,7 +225,7 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
     return ask_for_boom(&demo->farfield.extent, &demo->source[0], s, err);
   for (size_t i = 0; i < demo->n_source && st >= 0; i++)
     st = vg_settings_add(s, VG_TABLE_SOURCES, &demo->source[i], err);
-  return st < 0 ? st : ask_for_sheet(&demo->sheet, s, err);
+  return st < 0 ? st : ask_for_sheets(demo, s, err);
 }
 
 /* The path STEM.suffix, which must not exist yet. */
@@ -252,7 +295,7 @@ static vg_status write_project(char *const path[3], const char *stem,
   char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
   struct vg_mesh surface = demo->surface; /* Borrowed. */
-  struct vg_mesh with_sheet = VG_MESH_INIT;
+  struct vg_mesh with_sheet = VG_MESH_INIT, all = VG_MESH_INIT;
   int has_layers;
   vg_status st;
 
@@ -265,18 +308,18 @@ static vg_status write_project(char *const path[3], const char *stem,
   }
   if (demo->sheet.n_tri) {
     VG_TRY(vg_mesh_copy(&with_sheet, &demo->surface, err));
-    VG_TRY(add_sheet(&demo->sheet, &with_sheet, err));
+    VG_TRY(add_sheets(&demo->sheet, &with_sheet, err));
     surface = with_sheet;
   }
   VG_TRY(settings_of(name, demo, &s, err));
   has_layers = set_layers(name, &s);
-  VG_TRY(write_files(stem, name, &surface, &demo->surface, &s,
+  VG_TRY(list_patches(demo, &all, err));
+  VG_TRY(write_files(stem, name, &surface, &all, &s,
                      has_layers ? layer_comment : NULL, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));
-  printf("%s: boundary conditions of %zu patches\n", path[1],
-         demo->surface.n_patch);
+  printf("%s: boundary conditions of %zu patches\n", path[1], all.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");
@@ -286,6 +329,7 @@ static vg_status write_project(char *const path[3], const char *stem,
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
   vg_mesh_release(&with_sheet);
+  vg_mesh_release(&all);
   vg_settings_release(&s);
   return st;
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
@@ -209,10 +210,30 @@ done:
 static vg_status write_vtu(const struct run *r, const char *path,
                            struct vg_error *err)
 {
-  const struct vg_vtu_field field = { VG_VTU_SOLVER_PART, VG_VTU_CELL,
-                                      VG_VTU_INT32, 1, r->part };
+  struct vg_vtu_field field[2] = {
+    { VG_VTU_SOLVER_PART, VG_VTU_CELL, VG_VTU_INT32, 1, r->part },
+    { VG_VTU_ZONE, VG_VTU_CELL, VG_VTU_INT32, 1, NULL }
+  };
+  int32_t *id = NULL;
+  vg_status st;
 
-  return vg_vtu_write(path, &r->mesh, &field, 1, err);
+  VG_TRY(vg_mesh_zone_numbers(&r->mesh, &id, err));
+  field[1].data = id;
+  st = vg_vtu_write(path, &r->mesh, field, id ? 2 : 1, err);
+done:
+  free(id);
+  return st;
+}
+
+/* A list of parts has the order of the cells of the file. */
+static vg_status check_order(const struct run *r, struct vg_error *err)
+{
+  if (!r->a->to_part || !r->mesh.is_resorted) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: the cells of its zones are not together, so that a list "
+                 "of parts would have another order; convert the mesh with "
+                 "'vanguard convert' and partition the result",
+                 r->path);
 }
 
 static vg_status write_foam(const struct run *r, const char *path,
@@ -292,6 +313,7 @@ static vg_status run_all(struct run *r, struct vg_display *show,
   VG_TRY(vg_outputs_claim(&r->outputs, &r->notes, err));
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_mesh(r, err));
+  VG_TRY(check_order(r, err));
   vg_display_update(show, "partition", r->n_cell, 0);
   VG_TRY(vg_solver_part(&r->mesh, &r->layers, &r->a->options, path, r->part,
                         &r->report, err));

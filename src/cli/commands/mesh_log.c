@@ -47,9 +47,10 @@ void vg_mesh_log_start(const struct vg_run *r, int argc, char **argv)
 void vg_mesh_log_settings(const struct vg_run *r,
                           const struct vg_settings *asked)
 {
-  static const enum vg_table_kind table[] = { VG_TABLE_PATCHES, VG_TABLE_LAYERS,
-                                              VG_TABLE_SURFACE, VG_TABLE_WAKES,
-                                              VG_TABLE_SOURCES };
+  static const enum vg_table_kind table[] = {
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
+    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+  };
   const struct vg_param *p;
   const char *name;
   char value[2 * VG_LIST_MAX + 4];

@@ -25,10 +25,6 @@
 #define SPHERE_FINE 0.02
 #define SPHERE_COARSE 1.5
 
-/* Place and radius of the actuator disk ahead of the sphere. */
-#define DISK_X (-2.0)
-#define DISK_RADIUS 1.5
-
 enum kind { BOX, SPHERE, WING, BOOM };
 
 static const struct vg_demo_case cases[] = {
@@ -42,6 +38,7 @@ static const struct vg_demo_case cases[] = {
   { "boom", "body of revolution at Mach 1.6, with its sonic boom", 300000 },
   { "boom-half", "half model of boom, on a symmetry plane", 250000 },
   { "disk", "sphere behind an actuator disk, which is a sheet", 300000 },
+  { "rotor", "impeller in a rotating zone of a box", 100000 },
 };
 
 enum { N_ENTRY = sizeof cases / sizeof *cases };
@@ -50,11 +47,20 @@ enum { N_ENTRY = sizeof cases / sizeof *cases };
 static const struct entry {
   enum kind kind;
   struct vg_demo_wing wing;
-  int has_disk;
+  /* Adds sheets, or NULL. */
+  vg_status (*sheets)(const struct vg_demo_spacing *law, struct vg_demo *d,
+                      struct vg_error *err);
 } entries[N_ENTRY] = {
-  { BOX, { 0, 0 }, 0 },  { SPHERE, { 0, 0 }, 0 }, { WING, { 0, 0 }, 0 },
-  { WING, { 0, 1 }, 0 }, { WING, { 1, 0 }, 0 },   { WING, { 1, 1 }, 0 },
-  { BOOM, { 0, 0 }, 0 }, { BOOM, { 0, 1 }, 0 },   { SPHERE, { 0, 0 }, 1 },
+  { BOX, { 0, 0 }, NULL },
+  { SPHERE, { 0, 0 }, NULL },
+  { WING, { 0, 0 }, NULL },
+  { WING, { 0, 1 }, NULL },
+  { WING, { 1, 0 }, NULL },
+  { WING, { 1, 1 }, NULL },
+  { BOOM, { 0, 0 }, NULL },
+  { BOOM, { 0, 1 }, NULL },
+  { SPHERE, { 0, 0 }, vg_demo_add_disk },
+  { BOX, { 0, 0 }, vg_demo_add_rotor },
 };
 
 const struct vg_demo_case *vg_demo_cases(size_t *n)
@@ -311,70 +317,6 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
   return st;
 }
 
-/* The point at radius r of the disk in the direction of a point of a hexagon,
- * which is at a share of one of its sides. */
-static void put_on_disk(uint32_t side, double share, double r, double x[3])
-{
-  static const double high = 0.86602540378443864676; /* sqrt(3) / 2 */
-  const double corner[7][2] = { { 1, 0 },  { .5, high },   { -.5, high },
-                                { -1, 0 }, { -.5, -high }, { .5, -high },
-                                { 1, 0 } };
-  const double *from = corner[side], *to = corner[side + 1];
-  const double y = from[0] + share * (to[0] - from[0]);
-  const double z = from[1] + share * (to[1] - from[1]);
-  const double length = sqrt(y * y + z * z);
-
-  x[0] = DISK_X;
-  x[1] = r * y / length;
-  x[2] = r * z / length;
-}
-
-/* Adds ring k of n of the disk: its points, and the triangles to ring k - 1,
- * whose points begin at 3 (k - 1) (k - 2) + 1. */
-static void add_ring(struct vg_mesh *m, uint32_t k, uint32_t n)
-{
-  const uint32_t outer = (uint32_t)m->n_point, m_in = 6 * (k - 1);
-  const uint32_t inner = k > 1 ? outer - m_in : 0;
-
-  for (uint32_t i = 0; i < 6 * k; i++)
-    put_on_disk(i / k, (double)(i % k) / k, DISK_RADIUS * k / n,
-                m->point[m->n_point++]);
-  for (uint32_t i = 0; i < 6 * k; i++) {
-    const uint32_t side = i / k, at = i % k; /* of six sides of k edges */
-    const uint32_t in = m_in ? inner + (side * (k - 1) + at) % m_in : inner;
-    const uint32_t next = m_in ? inner + (side * (k - 1) + at + 1) % m_in : 0;
-    uint32_t(*tri)[3] = m->tri + m->n_tri;
-
-    memcpy(tri[0], (uint32_t[]){ in, outer + i, outer + (i + 1) % (6 * k) },
-           sizeof *tri);
-    m->n_tri++;
-    if (at + 1 == k) continue; /* a corner of the inner ring */
-    memcpy(tri[1], (uint32_t[]){ in, outer + i + 1, next }, sizeof *tri);
-    m->n_tri++;
-  }
-}
-
-/* A disk across the flow ahead of the sphere, in rings of 6 k points, with
- * edges of the size at its centre. */
-static vg_status disk_surface(const struct scaled *s, struct vg_demo *d,
-                              struct vg_error *err)
-{
-  static const double centre[3] = { DISK_X, 0, 0 };
-  const double n_edge = DISK_RADIUS / vg_demo_size((void *)&s->law, centre);
-  const uint32_t n = n_edge < 4 ? 4 : n_edge > 4000 ? 4000 : (uint32_t)n_edge;
-  struct vg_mesh *m = &d->sheet;
-
-  m->point = vg_alloc(3 * (size_t)n * (n + 1) + 1, sizeof *m->point);
-  m->tri = vg_alloc(6 * (size_t)n * n, sizeof *m->tri);
-  m->tri_patch = vg_calloc(6 * (size_t)n * n, sizeof *m->tri_patch);
-  if (!m->point || !m->tri || !m->tri_patch)
-    return vg_fail_memory(err, "the disk");
-  memcpy(m->point[m->n_point++], centre, sizeof centre);
-  for (uint32_t ring = 1; ring <= n; ring++) add_ring(m, ring, n);
-  return name_patch(m, (int32_t)d->surface.n_patch + 1, "disk", VG_BC_NONE,
-                    VG_BC_NONE, err);
-}
-
 static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
                               struct vg_error *err)
 {
@@ -500,7 +442,7 @@ vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
                    n_cell);
   if (!n_cell) n_cell = cases[s.entry - entries].n_cell;
   st = make(&s, (double)n_cell, &d, err);
-  if (st == VG_OK && s.entry->has_disk) st = disk_surface(&s, &d, err);
+  if (st == VG_OK && s.entry->sheets) st = s.entry->sheets(&s.law, &d, err);
   if (st == VG_OK) {
     *out = d;
     d = (struct vg_demo)VG_DEMO_INIT;

@@ -34,8 +34,11 @@ const struct vg_demo_case *vg_demo_cases(size_t *n);
 struct vg_demo {
   struct vg_mesh surface; /* closed, normals point into the fluid; patches
                              have names and conditions of both solvers */
-  struct vg_mesh sheet;   /* triangles that the run takes as a sheet; empty in
-                             most cases */
+  struct vg_mesh sheet;   /* triangles of inner surfaces, without points of the
+                             surface: interfaces (is_interface), other sheets
+                             (is_sheet), baffles; empty in most cases */
+  struct vg_zone zone;    /* rotating zone, if it has a name */
+  double seed[3];         /* a point in it */
   size_t n_body_tri;      /* the first triangles of the surface, which are the
                              body; 0: no body */
   size_t n_body_point;    /* the first points, which are those of the body */
@@ -60,7 +63,8 @@ struct vg_demo {
  *                "wing-sharp", "wing-sharp-half" with a sharp one; "boom",
  *                "boom-half" a body of revolution at Mach 1.6 in a domain
  *                along the Mach cone, with cells stretched along it;
- *                "disk" the sphere behind an actuator disk
+ *                "disk" the sphere behind an actuator disk; "rotor" the box
+ *                with an impeller in a rotating zone
  * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
  * @param out     owned by the caller, vg_demo_release; unchanged on failure

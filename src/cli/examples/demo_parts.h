@@ -55,4 +55,14 @@ int vg_demo_boom_holds(const double x[3]);
 vg_status vg_demo_boom_surface(int is_half, const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err);
 
+/** demo_sheets.c: a disk across the flow ahead of the sphere, with edges of the
+ * size at its centre. */
+vg_status vg_demo_add_disk(const struct vg_demo_spacing *law, struct vg_demo *d,
+                           struct vg_error *err);
+
+/** demo_sheets.c: a cylinder in the box, an interface, and in it four pitched
+ * blades, which are baffles. */
+vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
+                            struct vg_demo *d, struct vg_error *err);
+
 #endif

@@ -49,6 +49,7 @@ static vg_status sections(struct page *p, struct vg_error *err)
   if (!is_section) vg_html_worst(p);
   vg_html_volumes(p);
   vg_html_wakes(p);
+  vg_html_zones(p);
   vg_html_settings(p);
   vg_html_patches(p);
   if (!is_section) vg_html_partition(p);

@@ -49,7 +49,9 @@ static void kind_keys(struct page *p)
     "tetrahedra outside the layers", "tetrahedra in layers", "pyramids",
     "prisms", "hexahedra"
   };
-  const uint64_t *layer = p->h->run->slices.n_layer_cell;
+  const struct vg_run *run = p->h->run;
+  const uint64_t *layer = run->zones ? run->unsorted.n_layer_cell
+                                     : run->slices.n_layer_cell;
   const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
                                      layer[VG_SLICE_PYR], layer[VG_SLICE_PRI],
                                      layer[VG_SLICE_HEX] };

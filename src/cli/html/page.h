@@ -103,6 +103,7 @@ void vg_html_layers(struct page *p);
 void vg_html_quality(struct page *p);
 void vg_html_volumes(struct page *p);
 void vg_html_wakes(struct page *p);
+void vg_html_zones(struct page *p);
 void vg_html_worst(struct page *p);
 void vg_html_settings(struct page *p);
 void vg_html_patches(struct page *p);

@@ -88,10 +88,10 @@ static int line_in(const char *message, const char *table)
 static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_form_fault *fault, struct vg_error *err)
 {
-  static const enum vg_table_kind tables[] = { VG_TABLE_PATCHES,
-                                               VG_TABLE_LAYERS,
-                                               VG_TABLE_SURFACE, VG_TABLE_WAKES,
-                                               VG_TABLE_SOURCES };
+  static const enum vg_table_kind tables[] = {
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
+    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+  };
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < sizeof tables / sizeof *tables && st >= 0; i++) {
@@ -103,6 +103,7 @@ static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
     if (tables[i] == VG_TABLE_LAYERS) s->n_layer = 0;
     if (tables[i] == VG_TABLE_SURFACE) s->n_surface = 0;
     if (tables[i] == VG_TABLE_WAKES) s->n_wake = 0;
+    if (tables[i] == VG_TABLE_ZONES) s->n_zone = 0;
     if (tables[i] == VG_TABLE_SOURCES) s->n_source = 0;
     st = vg_rows_read(text, tables[i], s, err);
     if (st >= 0) continue;

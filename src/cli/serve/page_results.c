@@ -166,9 +166,10 @@ static size_t print_settings(FILE *to, const struct vg_settings *s, size_t n)
 /* Tables with different rows; returns their number. */
 static size_t print_tables(FILE *to, const struct vg_settings *s, size_t n)
 {
-  static const enum vg_table_kind kinds[] = { VG_TABLE_PATCHES, VG_TABLE_LAYERS,
-                                              VG_TABLE_SURFACE, VG_TABLE_WAKES,
-                                              VG_TABLE_SOURCES };
+  static const enum vg_table_kind kinds[] = {
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
+    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+  };
   size_t found = 0;
 
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {

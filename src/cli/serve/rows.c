@@ -132,6 +132,7 @@ union row {
   struct vg_layer_row l;
   struct vg_surface_row f;
   struct vg_wake_row k;
+  struct vg_zone_row z;
   struct vg_source s;
 };
 

@@ -30,9 +30,11 @@ size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i)
   if (m->patch[i].inner != VG_INNER_BACK) return i;
   for (size_t k = 0; k < i; k++)
     n += is_side(&m->patch[k], VG_INNER_BACK, is_sheet);
-  while (!is_side(&m->patch[front], VG_INNER_FRONT, is_sheet) || n--) front++;
-  assert(front < m->n_patch);
-  return front;
+  while (front < m->n_patch &&
+         (!is_side(&m->patch[front], VG_INNER_FRONT, is_sheet) || n--))
+    front++;
+  assert(front < m->n_patch || is_sheet == VG_SHEET_GONE);
+  return front < m->n_patch ? front : i;
 }
 
 static int is_same_place(const double a[3], const double b[3])

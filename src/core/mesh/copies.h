@@ -14,7 +14,8 @@ static inline int vg_mesh_has_inner(const struct vg_mesh *m)
   return 0;
 }
 
-/** The front of patch i if this is the back of an inner surface, otherwise i.
+/** The front of patch i if this is the back of an inner surface that has one,
+ * otherwise i.
  * Backs of baffles are in the order of their fronts, and so are those of
  * sheets. O(n_patch). */
 size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i);

@@ -24,6 +24,7 @@ void vg_mesh_release(struct vg_mesh *m)
   free(m->sheet_tri);
   free(m->sheet_of);
   free(m->sheet);
+  free(m->zone);
   memset(m, 0, sizeof *m);
 }
 
@@ -69,6 +70,7 @@ vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
   COPY(sheet_tri, n_sheet_tri);
   COPY(sheet_of, n_sheet_tri);
   COPY(sheet, n_sheet);
+  COPY(zone, n_zone);
 #undef COPY
   if (!bad) return VG_OK;
   vg_mesh_release(to);

@@ -34,17 +34,34 @@
 /* Part of an inner surface, which has fluid on both sides. */
 enum { VG_INNER_NOT, VG_INNER_FRONT, VG_INNER_BACK };
 
+#define VG_SHEET_GONE 2
+
 /** A named part of the boundary. */
 struct vg_patch {
-  int32_t id;             /* number in the files; any value, unique */
-  int32_t bc;             /* USM3D code (formats.md 1.4), or VG_BC_NONE */
-  int32_t bc_fun3d;       /* FUN3D code, or VG_BC_NONE */
-  int32_t family;         /* VGRID family column; equal to bc if unknown */
-  int32_t inner;          /* VG_INNER_...: side of an inner surface; its other
-                             side has the same triangles, reversed */
-  int32_t is_sheet;       /* 1: an inner surface through which the mesh is
-                             connected (core/mesh/sheets.h) */
+  int32_t id;           /* number in the files; any value, unique */
+  int32_t bc;           /* USM3D code (formats.md 1.4), or VG_BC_NONE */
+  int32_t bc_fun3d;     /* FUN3D code, or VG_BC_NONE */
+  int32_t family;       /* VGRID family column; equal to bc if unknown */
+  int32_t inner;        /* VG_INNER_...: side of an inner surface; its other
+                           side has the same triangles, reversed */
+  int32_t is_sheet;     /* 1: an inner surface through which the mesh is
+                           connected (core/mesh/sheets.h); VG_SHEET_GONE: a
+                           patch without triangles that goes away with the
+                           sheets */
+  int32_t is_interface; /* 1: a sheet that separates zones, or a wall between a
+                           zone and one without cells */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
+};
+
+/* Kinds of zones. */
+enum { VG_ZONE_FLUID, VG_ZONE_ROTATING, VG_ZONE_POROUS, VG_ZONE_SOLID };
+
+/** A named part of the cells (core/mesh/zones.h). */
+struct vg_zone {
+  int32_t id;         /* number in the files, unique, > 0 */
+  int32_t kind;       /* VG_ZONE_... */
+  uint64_t n_cell[4]; /* tetrahedra, pyramids, prisms, hexahedra */
+  char name[VG_NAME_MAX];
 };
 
 struct vg_mesh {
@@ -64,6 +81,10 @@ struct vg_mesh {
   uint32_t (*sheet_tri)[3]; /* [n_sheet_tri] of any orientation */
   uint32_t *sheet_of;       /* [n_sheet_tri] index into sheet[] */
   struct vg_patch *sheet;   /* [n_sheet] numbers and names */
+  /* Zones: cells of each kind are in the order of their zones. */
+  size_t n_zone;
+  struct vg_zone *zone; /* [n_zone]; 0: all cells are one nameless zone */
+  int is_resorted; /* 1: the cells of a file were not in the order of zones */
 };
 #define VG_MESH_INIT                                                           \
   {                                                                            \

@@ -56,9 +56,9 @@ vg_status vg_mesh_part_sheets(struct vg_mesh *m, struct vg_error *err)
   size_t n = 0, n_patch = 0, n_kept = 0;
 
   assert(!m->n_sheet_tri && !m->sheet_tri && !m->sheet);
+  if (!vg_mesh_has_sheets(m)) return VG_OK;
   for (size_t p = 0; p < m->n_patch; p++)
     n_patch += is_sheet(&m->patch[p], VG_INNER_FRONT);
-  if (!n_patch) return VG_OK;
   for (size_t t = 0; t < m->n_tri; t++)
     n += is_sheet(&m->patch[m->tri_patch[t]], VG_INNER_FRONT);
   to = vg_alloc(m->n_patch, sizeof *to);

@@ -8,6 +8,7 @@
 #include "base/union_find.h"
 #include "core/geometry/predicates.h"
 #include "core/sides/inner_parts.h"
+#include "core/sides/zone_line.h"
 
 static vg_status fail_at(const struct vg_inner_work *s, size_t t,
                          const char *why, struct vg_error *err)
@@ -47,27 +48,13 @@ static vg_status check_points(const struct vg_inner_work *s,
 /* --- sheets that no other surface touches -----------------------------------
  */
 
-/* 1: the straight line from a to b crosses triangle t, 0: it does not, -1: it
- * meets its border or its plane. */
 static int crosses(const struct vg_mesh *m, size_t t, const double *a,
                    const double *b)
 {
   const double *x[3];
-  double from, to;
-  int n_positive = 0;
 
   for (int k = 0; k < 3; k++) x[k] = m->point[m->tri[t][k]];
-  from = vg_orient3d(x[0], x[1], x[2], a);
-  to = vg_orient3d(x[0], x[1], x[2], b);
-  if ((from > 0 && to > 0) || (from < 0 && to < 0)) return 0;
-  for (int k = 0; k < 3; k++) {
-    const double side = vg_orient3d(a, b, x[k], x[(k + 1) % 3]);
-
-    if (side == 0) return -1;
-    n_positive += side > 0;
-  }
-  if (n_positive % 3) return 0;
-  return from == 0 || to == 0 ? -1 : 1;
+  return vg_line_crosses(x, a, b);
 }
 
 /* A place in triangle t that is not a special one such as the centroid, so that

@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 #include "io/cgns/cgns_conditions.h"
 #include "io/cgns/cgns_put.h"
 #include "io/cgns/cgns_store.h"
@@ -24,6 +25,7 @@
 #define BLOCK 1024
 #define SECOND "+quads" /* a suffix; words have no plus */
 #define REGION "+faces" /* another one */
+#define CELLS_OF "+cells"
 
 /* Our node order to CGNS's, whose pyramid has its apex last; CGNS's codes of
  * kinds. */
@@ -46,15 +48,15 @@ enum what { POINTS, CELLS, FACES };
 struct vg_cgns_array {
   uint64_t at, size;
   enum what what;
-  int which; /* axis, kind of cells, or vertices per face */
-  size_t first, end;
+  int which;         /* axis, kind of cells, or vertices per face */
+  size_t first, end; /* first: also of cells */
 };
 
 /* A file during layout. */
 struct layout {
   struct vg_cgns *c;
   struct vg_cgns_tree *tree;
-  char (*word)[VG_PATCH_WORD];
+  char (*word)[VG_PATCH_WORD]; /* of patches, then of zones */
   uint64_t n_cell[VG_CGNS_KINDS];
   uint64_t n_element; /* number of elements in the sections so far */
   int64_t base, zone, boundary;
@@ -180,16 +182,31 @@ static vg_status layout_points(struct layout *l, struct vg_error *err)
   return st;
 }
 
+static vg_status layout_kind(struct layout *l, int k, const char *name,
+                             uint64_t first, uint64_t n, struct vg_error *err)
+{
+  return n ? add_section(l, name, kinds[k].code, n, kinds[k].n_node,
+                         (struct vg_cgns_array){
+                           .what = CELLS, .which = k, .first = (size_t)first },
+                         err)
+           : VG_OK;
+}
+
+/* Sections of a zone follow each other, so that its elements are a range. */
 static vg_status layout_cells(struct layout *l, struct vg_error *err)
 {
+  const struct vg_mesh *m = l->c->frame;
+  char name[VG_CGNS_NAME];
   vg_status st = VG_OK;
 
-  for (int k = 0; k < VG_CGNS_KINDS && st >= 0; k++)
-    if (l->n_cell[k])
-      st = add_section(l, kinds[k].name, kinds[k].code, l->n_cell[k],
-                       kinds[k].n_node,
-                       (struct vg_cgns_array){ .what = CELLS, .which = k },
-                       err);
+  for (int k = 0; k < VG_CGNS_KINDS && !m->n_zone && st >= 0; k++)
+    st = layout_kind(l, k, kinds[k].name, 0, l->n_cell[k], err);
+  for (size_t z = 0; z < m->n_zone; z++)
+    for (int k = 0; k < VG_CGNS_KINDS && st >= 0; k++) {
+      snprintf(name, sizeof name, "%s+%zu", kinds[k].name, z + 1);
+      st = layout_kind(l, k, name, vg_mesh_zone_start(m, z, k),
+                       m->zone[z].n_cell[k], err);
+    }
   return st;
 }
 
@@ -224,27 +241,57 @@ static vg_status add_family(struct layout *l, const char *word, int32_t number,
          : add_text(l, *id, VG_CGNS_NUMBER, "Descriptor_t", text, NULL, err);
 }
 
-/* A sheet has a family without a condition, and the region of its faces. */
+/* A region of faces or cells, with a family that has no condition. */
+static vg_status layout_region(struct layout *l, const char *word, int32_t of,
+                               int32_t number, const int64_t range[2],
+                               int64_t *id, struct vg_error *err)
+{
+  const struct vg_cgns_data dimension = { "I4", 1, { 1, 0 }, &of };
+  char name[VG_CGNS_NAME];
+  vg_status st;
+
+  snprintf(name, sizeof name, "%.*s%s", VG_CGNS_WORD_MOST, word,
+           of == 3 ? CELLS_OF : REGION);
+  VG_TRY(vg_cgns_tree_add(l->tree, l->zone, name, "ZoneSubRegion_t", &dimension,
+                          id, NULL, err));
+  VG_TRY(add_indices(l, *id, "PointRange", "IndexRange_t", 2, 1, 2, range, NULL,
+                     err));
+  VG_TRY(add_text(l, *id, "GridLocation", "GridLocation_t",
+                  of == 3 ? "CellCenter" : "FaceCenter", NULL, err));
+  VG_TRY(add_text(l, *id, "FamilyName", "FamilyName_t", word, NULL, err));
+  st = add_family(l, word, number, id, err);
+done:
+  return st;
+}
+
 static vg_status layout_sheet(struct layout *l, const char *word,
                               const struct vg_patch *p, uint64_t before,
                               struct vg_error *err)
 {
-  static const int32_t two = 2;
-  const struct vg_cgns_data dimension = { "I4", 1, { 1, 0 }, &two };
   const int64_t range[2] = { (int64_t)before + 1, (int64_t)l->n_element };
-  char name[VG_CGNS_NAME];
   int64_t id;
-  vg_status st;
 
-  snprintf(name, sizeof name, "%.*s" REGION, VG_CGNS_WORD_MOST, word);
-  VG_TRY(vg_cgns_tree_add(l->tree, l->zone, name, "ZoneSubRegion_t", &dimension,
-                          &id, NULL, err));
-  VG_TRY(add_indices(l, id, "PointRange", "IndexRange_t", 2, 1, 2, range, NULL,
-                     err));
-  VG_TRY(
-    add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
-  VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
-  st = add_family(l, word, p->id, &id, err);
+  return layout_region(l, word, 2, p->id, range, &id, err);
+}
+
+/* The family of a zone records its kind, too. */
+static vg_status layout_zones(struct layout *l, struct vg_error *err)
+{
+  const struct vg_mesh *m = l->c->frame;
+  int64_t range[2] = { 1, 0 }, id;
+  vg_status st = VG_OK;
+
+  for (size_t z = 0; z < m->n_zone && st >= 0; z++) {
+    const uint64_t n = vg_mesh_zone_cells(m, z);
+
+    range[1] += (int64_t)n;
+    if (!n) continue;
+    VG_TRY(layout_region(l, l->word[m->n_patch + z], 3, m->zone[z].id, range,
+                         &id, err));
+    st = add_text(l, id, VG_CGNS_KIND, "Descriptor_t",
+                  vg_zone_kind_word[m->zone[z].kind], NULL, err);
+    range[0] = range[1] + 1;
+  }
 done:
   return st;
 }
@@ -345,6 +392,7 @@ static vg_status make_layout(const char *path, struct layout *l,
   VG_TRY(layout_zone(l, root, err));
   VG_TRY(layout_points(l, err));
   VG_TRY(layout_cells(l, err));
+  VG_TRY(layout_zones(l, err));
   VG_TRY(layout_patches(l, err));
   st = vg_cgns_tree_close(l->tree, err);
   l->tree = NULL;
@@ -357,18 +405,26 @@ done:
   return st;
 }
 
-/* Words of the patches; none equals the name of another node. */
+/* Words of the patches and, after them, of the zones; none equals the name of
+ * another node. */
 static vg_status make_words(struct layout *l, struct vg_error *err)
 {
   static const char *const taken[] = { "Zone",       "ZoneType",
                                        "ZoneBC",     "GridCoordinates",
                                        "Tetrahedra", "Pyramids",
                                        "Prisms",     "Hexahedra" };
-  struct vg_mesh m = *l->c->frame;
+  const struct vg_mesh *frame = l->c->frame;
+  struct vg_mesh m = { .n_patch = frame->n_patch + frame->n_zone };
 
-  m.patch = vg_alloc(m.n_patch, sizeof *m.patch);
+  m.patch = vg_calloc(m.n_patch, sizeof *m.patch);
   for (size_t p = 0; m.patch && p < m.n_patch; p++) {
-    m.patch[p] = l->c->frame->patch[p];
+    const struct vg_zone *z = frame->zone + (p - frame->n_patch);
+
+    if (p < frame->n_patch) m.patch[p] = frame->patch[p];
+    else {
+      m.patch[p].id = z->id;
+      snprintf(m.patch[p].name, VG_NAME_MAX, *z->name ? "%s" : "zone", z->name);
+    }
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
       if (!strcmp(m.patch[p].name, taken[i]))
         snprintf(m.patch[p].name, VG_NAME_MAX, "patch_%s", taken[i]);
@@ -409,7 +465,9 @@ vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
                  path);
     goto done;
   }
-  c->array = vg_alloc(3 + VG_CGNS_KINDS + 2 * frame->n_patch, sizeof *c->array);
+  c->array = vg_alloc(3 + VG_CGNS_KINDS * (1 + frame->n_zone) +
+                        2 * frame->n_patch,
+                      sizeof *c->array);
   if (!c->array) VG_TRY(vg_fail_memory(err, "the nodes of a CGNS file"));
   VG_TRY(make_words(&l, err));
   VG_TRY(vg_boundary_by_patch(frame, &c->face_first, &c->face, err));
@@ -493,7 +551,8 @@ static void put_cells(struct vg_output *out, const struct vg_cgns *c,
   size_t n_node = (size_t)kinds[a->which].n_node;
   size_t n = (size_t)(a->size / (uint64_t)index_size(&c->places)) / n_node;
 
-  vg_cgns_put_cells(out, &c->places, a->which, n, cell[a->which], NULL);
+  vg_cgns_put_cells(out, &c->places, a->which, n,
+                    cell[a->which] + a->first * n_node, NULL);
 }
 
 static void put_faces(struct vg_output *out, const struct vg_cgns *c,

@@ -22,7 +22,7 @@ struct answer {
 };
 
 /* Arrays of a mesh, in the order in which they are sent. */
-enum { N_ARRAY = 10 };
+enum { N_ARRAY = 11 };
 
 struct array {
   void **at;
@@ -36,7 +36,7 @@ static void list_arrays(struct vg_mesh *m, struct array list[N_ARRAY])
     ARRAY(point, n_point),   ARRAY(tri, n_tri),         ARRAY(quad, n_quad),
     ARRAY(tri_patch, n_tri), ARRAY(quad_patch, n_quad), ARRAY(tet, n_tet),
     ARRAY(pyr, n_pyr),       ARRAY(pri, n_pri),         ARRAY(hex, n_hex),
-    ARRAY(patch, n_patch)
+    ARRAY(patch, n_patch),   ARRAY(zone, n_zone)
 #undef ARRAY
   };
 

@@ -8,6 +8,7 @@
 
 /** Descriptor_t of a Family_t with the number of its patch, as text. */
 #define VG_CGNS_NUMBER "PatchNumber"
+#define VG_CGNS_KIND "ZoneKind"
 
 /** BCType_t of a patch ("BCWallViscous", ...); NULL if it has no condition, or
  * one without a counterpart. */

@@ -129,19 +129,12 @@ static vg_status read_families(struct vg_cgns_reader *r, int64_t base,
     if (st >= 0)
       st = vg_cgns_child_text(r, list[i].id, "Descriptor_t", VG_CGNS_NUMBER,
                               f->number, err);
+    if (st >= 0)
+      st = vg_cgns_child_text(r, list[i].id, "Descriptor_t", VG_CGNS_KIND,
+                              f->kind, err);
   }
   free(list);
   return st;
-}
-
-static const struct vg_cgns_family *find_family(const struct vg_cgns_reader *r,
-                                                const char *name)
-{
-  struct vg_cgns_family key = { .name = "" };
-
-  if (!r->n_family) return NULL;
-  snprintf(key.name, sizeof key.name, "%.*s", VG_CGNS_NAME - 1, name);
-  return bsearch(&key, r->family, r->n_family, sizeof key, by_name);
 }
 
 /* Find or create the patch with this name. condition "" means that of the
@@ -150,7 +143,7 @@ vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
                              const char *condition, uint32_t *at,
                              struct vg_error *err)
 {
-  const struct vg_cgns_family *f = find_family(r, name);
+  const struct vg_cgns_family *f = vg_cgns_find_family(r, name);
   struct vg_patch *p;
   vg_status st = vg_soup_named_patch(&r->soup, name, strlen(name), at, err);
 
@@ -481,10 +474,11 @@ static uint32_t *next_element(struct vg_cgns_reader *r, enum element e,
 #undef NEXT
 }
 
+/* patch: of a face; tag: of a cell */
 static vg_status take_element(struct vg_cgns_reader *r,
                               const struct vg_cgns_section *s,
                               const struct type *t, int64_t number,
-                              const int64_t *v, uint32_t patch,
+                              const int64_t *v, uint32_t patch, int32_t tag,
                               struct vg_error *err)
 {
   uint32_t node[NODES_MOST], *to;
@@ -500,6 +494,8 @@ static vg_status take_element(struct vg_cgns_reader *r,
   }
   if (t->element == PASSED) return VG_OK;
   if (t->element == TRI) return vg_soup_triangle(&r->soup, node, patch, err);
+  if (t->element > QUAD && vg_cgns_take_tag(r, t->element, tag))
+    return vg_fail_memory(err, "the zones");
   to = next_element(r, t->element, patch);
   if (!to) return vg_fail_memory(err, "the elements");
   memcpy(to, node, (size_t)t->n_node * sizeof *to);
@@ -528,7 +524,7 @@ static vg_status take_section(struct vg_cgns_reader *r,
 {
   const struct type *t = find_type(s->code);
   uint32_t other = NONE;
-  size_t at = 0;
+  size_t at = 0, region = r->first_region;
   vg_status st = VG_OK;
 
   for (int64_t e = s->first; e <= s->last && st >= 0; e++) {
@@ -545,7 +541,9 @@ static vg_status take_section(struct vg_cgns_reader *r,
       if (other == NONE) st = default_patch(r, s, &other, err);
       patch = other;
     }
-    if (st >= 0) st = take_element(r, s, t, e, s->v + at, patch, err);
+    if (st >= 0)
+      st = take_element(r, s, t, e, s->v + at, patch,
+                        vg_cgns_region_of(r, e, &region), err);
     at += (size_t)t->n_node;
   }
   if (st >= 0 && at != s->n_v)
@@ -586,6 +584,7 @@ static vg_status read_elements(struct vg_cgns_reader *r, const int64_t *size,
   VG_TRY(read_points(r, err));
   VG_TRY(read_sections(r, err));
   VG_TRY(vg_cgns_read_conditions(r, read_condition, err));
+  VG_TRY(vg_cgns_read_regions(r, err));
   for (size_t i = 0; i < r->n_section; i++)
     VG_TRY(take_section(r, &r->section[i], err));
 done:
@@ -726,7 +725,7 @@ static vg_status restore_numbers(struct vg_cgns_reader *r, struct vg_error *err)
   if (!id) return vg_fail_memory(err, "the patches");
   sorted = id + m->n_patch;
   for (size_t p = 0; p < m->n_patch && is_valid; p++) {
-    const struct vg_cgns_family *f = find_family(r, m->patch[p].name);
+    const struct vg_cgns_family *f = vg_cgns_find_family(r, m->patch[p].name);
     int64_t v;
 
     is_valid = f && vg_parse_int(f->number, strlen(f->number), &v) &&
@@ -762,7 +761,8 @@ static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
                    r->in->path);
   VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
                          err));
-  if (!has_cells) vg_mesh_keep_boundary(m);
+  if (has_cells) VG_TRY(vg_cgns_make_zones(r, err));
+  else vg_mesh_keep_boundary(m);
   VG_TRY(vg_mesh_turn(m, NULL, err));
   VG_TRY(set_axes(m, err));
   VG_TRY(restore_numbers(r, err));
@@ -785,6 +785,8 @@ done:
   release_zone(&r);
   vg_soup_release(&r.soup);
   free(r.family);
+  free(r.region);
+  for (int e = 0; e < VG_CGNS_N_ELEMENT; e++) free(r.tag[e]);
   vg_cgns_tree_close(r.tree, NULL);
   return st;
 }

@@ -14,6 +14,13 @@ enum { VG_CGNS_N_ELEMENT = 7 };
 struct vg_cgns_family {
   char name[VG_CGNS_NAME], condition[VG_CGNS_NAME];
   char number[VG_CGNS_NAME]; /* of its patch, if Vanguard wrote it; or "" */
+  char kind[VG_CGNS_NAME];   /* of its zone; or "" */
+};
+
+/* Cells of a region, elements first to last of a zone. */
+struct vg_cgns_region {
+  char name[VG_CGNS_NAME];
+  int64_t first, last;
 };
 
 struct vg_cgns_reader {
@@ -35,6 +42,12 @@ struct vg_cgns_reader {
   int flat; /* index along which a surface has a single layer of points; -1:
                none */
   uint32_t *cell; /* patches of the faces of a surface */
+  /* Regions of cells: those of the current zone from first_region on. */
+  struct vg_cgns_region *region;
+  size_t n_region, cap_region, first_region;
+  int32_t *tag[VG_CGNS_N_ELEMENT]; /* of the cells read, by elements: number of
+                                      the region from 1; 0: none */
+  size_t cap_tag[VG_CGNS_N_ELEMENT];
 };
 
 typedef vg_status vg_cgns_read_one(struct vg_cgns_reader *r,
@@ -82,6 +95,26 @@ vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
 vg_status vg_cgns_condition_patch(struct vg_cgns_reader *r,
                                   const struct vg_cgns_node *b, uint32_t *patch,
                                   struct vg_error *err);
+
+/** Read the regions of cells of the current zone, and after all zones make the
+ * zones of the mesh from them (cgns_read_zones.c). A zone of the file among
+ * several is a region if it has none. Regions that overlap:
+ * VG_ERR_UNSUPPORTED. */
+vg_status vg_cgns_read_regions(struct vg_cgns_reader *r, struct vg_error *err);
+vg_status vg_cgns_make_zones(struct vg_cgns_reader *r, struct vg_error *err);
+
+/** The region of an element of the current zone, from 1; 0: none. *hint: of the
+ * element before. */
+int32_t vg_cgns_region_of(const struct vg_cgns_reader *r, int64_t element,
+                          size_t *hint);
+
+/** Note the region of the next cell, of the kind element < VG_CGNS_N_ELEMENT
+ * (cgns_read.c). Returns nonzero without memory. */
+int vg_cgns_take_tag(struct vg_cgns_reader *r, int element, int32_t region);
+
+/** The family of this name, or NULL. */
+const struct vg_cgns_family *vg_cgns_find_family(const struct vg_cgns_reader *r,
+                                                 const char *name);
 
 /** Read a structured zone with n sizes; the caller releases it. */
 vg_status vg_cgns_read_block(struct vg_cgns_reader *r, const int64_t *size,

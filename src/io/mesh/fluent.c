@@ -2,11 +2,13 @@
 #include "io/mesh/fluent.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 #include "io/mesh/foam_parts.h"
 #include "io/stream/boundary.h"
 #include "io/vgrid/mapbc.h"
@@ -93,6 +95,12 @@ static uint64_t face_line(const struct vg_fluent *f, int kind)
   return (kind == MIXED) + (uint64_t)(n_column * (f->width + 1)) + 1;
 }
 
+/* Number of a cell in the file, from 1. */
+static uint32_t number_of(const struct vg_fluent *f, uint32_t cell)
+{
+  return (f->number ? f->number[cell] : cell) + 1;
+}
+
 /* mate: the cell on the side from which the normal points, counted from 1; 0:
  * none. */
 static void put_face(struct vg_output *out, const struct vg_fluent *f, int kind,
@@ -156,8 +164,40 @@ static void put_head(struct vg_output *out, size_t zone, uint64_t before,
                    (unsigned long long)(before + n), type, kind);
 }
 
-/* Zone numbers are decimal in this section. */
-static void put_names(struct vg_output *out, const struct vg_fluent *f)
+/* Numbers of the zones of cells, and of the faces in them; z = n_zone: of the
+ * faces between them. */
+static size_t cells_id(const struct vg_fluent *f, size_t z)
+{
+  return z ? PATCHES + f->frame->n_patch + f->frame->n_sheet + z - 1 : FLUID;
+}
+
+static size_t interior_id(const struct vg_fluent *f, size_t z)
+{
+  return z ? cells_id(f, f->frame->n_zone + z) : INTERIOR;
+}
+
+static void put_zone_names(struct vg_output *out, const struct vg_fluent *f)
+{
+  const struct vg_mesh *m = f->frame;
+  const char(*word)[VG_PATCH_WORD] = (const char(*)[VG_PATCH_WORD])f->word;
+  const size_t first = m->n_patch + m->n_sheet, n_word = first + m->n_zone;
+  char text[VG_PATCH_WORD], name[VG_PATCH_WORD];
+
+  for (size_t z = 0; z < m->n_zone; z++)
+    vg_output_format(out, "(45 (%zu %s %s)())\n", cells_id(f, z),
+                     m->zone[z].kind == VG_ZONE_SOLID ? "solid" : "fluid",
+                     f->word[first + z]);
+  for (size_t z = 0; z <= m->n_zone; z++) {
+    snprintf(text, sizeof text, "interior_%.*s", VG_PATCH_WORD - 24,
+             z < m->n_zone ? f->word[first + z] : "between");
+    vg_patch_free_word(word, n_word, text, name);
+    if (f->n_face[z])
+      vg_output_format(out, "(45 (%zu interior %s)())\n", interior_id(f, z),
+                       name);
+  }
+}
+
+static void put_plain_names(struct vg_output *out, const struct vg_fluent *f)
 {
   const char(*word)[VG_PATCH_WORD] = (const char(*)[VG_PATCH_WORD])f->word;
   const size_t n_word = f->frame->n_patch + f->frame->n_sheet;
@@ -168,6 +208,15 @@ static void put_names(struct vg_output *out, const struct vg_fluent *f)
   vg_patch_free_word(word, n_word, "interior", name);
   if (n_plain(f))
     vg_output_format(out, "(45 (%d interior %s)())\n", INTERIOR, name);
+}
+
+/* Zone numbers are decimal in this section. */
+static void put_names(struct vg_output *out, const struct vg_fluent *f)
+{
+  const size_t n_word = f->frame->n_patch + f->frame->n_sheet;
+
+  if (f->number) put_zone_names(out, f);
+  else put_plain_names(out, f);
   for (size_t p = 0; p < f->frame->n_patch; p++)
     if (f->start[p] < f->start[p + 1])
       vg_output_format(out, "(45 (%zu %s %s)())\n", PATCHES + p,
@@ -217,6 +266,36 @@ static void put_cells(struct vg_output *out, struct vg_fluent *f, int is_whole)
   vg_output_text(out, kind == MIXED ? "))\n" : ")\n");
 }
 
+/* Cells of each zone, of one kind or with a list of kinds. */
+static void put_zone_cells(struct vg_output *out, const struct vg_fluent *f)
+{
+  const struct vg_mesh *m = f->frame;
+  uint64_t before = 0;
+
+  vg_output_format(out, "(12 (0 1 %llx 0 0))\n", (unsigned long long)f->n_cell);
+  for (size_t z = 0; z < m->n_zone; z++) {
+    const uint64_t *n = m->zone[z].n_cell, all = vg_mesh_zone_cells(m, z);
+    uint64_t at = 0;
+    int kind = MIXED;
+
+    for (int k = 0; k < VG_FLUENT_KINDS; k++)
+      if (n[k] == all) kind = digit[k] - '0';
+    if (!all) continue;
+    vg_output_format(out, "(12 (%zx %llx %llx 1 %x)%s", cells_id(f, z),
+                     (unsigned long long)before + 1,
+                     (unsigned long long)(before + all), kind,
+                     kind == MIXED ? "(\n" : "");
+    for (int k = 0; kind == MIXED && k < VG_FLUENT_KINDS; k++)
+      for (uint64_t c = 0; c < n[k]; c++) {
+        const char text[2] = { digit[k], ++at % 32 ? ' ' : '\n' };
+
+        vg_output_bytes(out, text, 2);
+      }
+    vg_output_text(out, kind == MIXED ? "))\n" : ")\n");
+    before += all;
+  }
+}
+
 /* A face between cells that is in a sheet: code of the half-face of the lower
  * cell, and the other cell. */
 struct sheet_face {
@@ -242,6 +321,64 @@ static int keep_sheet(struct sheet_faces *s, int n, const uint32_t *node,
   if (t == UINT32_MAX) return 0;
   s->face[t] = (struct sheet_face){ code, mate };
   return 1;
+}
+
+/* Writes the plain faces of the cells first to end - 1 that are in group g:
+ * both cells in zone g, or g = n_zone and two zones. out NULL: counts them in n
+ * and n_quad instead, of all groups. */
+static void group_faces(struct vg_output *out, const struct vg_fluent *f,
+                        const struct vg_cell_links *links,
+                        struct sheet_faces *sheets, uint64_t first,
+                        uint64_t end, size_t g, uint64_t *n, uint64_t *n_quad)
+{
+  uint32_t code[6], neighbour[6], node[4];
+
+  for (uint32_t cell = (uint32_t)first; cell < end; cell++) {
+    const int n_face = vg_foam_upper(links, cell, code, neighbour);
+
+    for (int i = 0; i < n_face; i++) {
+      const uint32_t mate = neighbour[i];
+      const size_t of = f->zone[cell] == f->zone[mate] ? f->zone[cell]
+                                                       : f->frame->n_zone;
+      const int n_node = vg_half_face_nodes(links, code[i], node);
+
+      if (keep_sheet(sheets, n_node, node, code[i], mate)) continue;
+      if (!out) {
+        n[of]++;
+        n_quad[of] += n_node == 4;
+      } else if (of == g)
+        put_face(out, f, face_kind(n[g], n_quad[g]), n_node, node,
+                 number_of(f, mate), number_of(f, cell));
+    }
+  }
+}
+
+/* A zone of faces for each zone of cells, and one for those between. */
+static void put_interiors(struct vg_output *out, struct vg_fluent *f,
+                          const struct vg_cell_links *links,
+                          struct sheet_faces *sheets)
+{
+  const struct vg_mesh *m = f->frame;
+  uint64_t *n_quad = f->n_face + m->n_zone + 1, before = 0;
+
+  group_faces(NULL, f, links, sheets, 0, f->n_cell, 0, f->n_face, n_quad);
+  for (size_t g = 0; g <= m->n_zone; g++) {
+    const uint64_t n = f->n_face[g];
+
+    if (!n) continue;
+    put_head(out, interior_id(f, g), before, n, TYPE_INTERIOR,
+             face_kind(n, n_quad[g]));
+    for (int k = 0; k < VG_FLUENT_KINDS && g < m->n_zone; k++) {
+      const uint64_t first = f->first[k] + vg_mesh_zone_start(m, g, k);
+
+      group_faces(out, f, links, sheets, first, first + m->zone[g].n_cell[k], g,
+                  f->n_face, n_quad);
+    }
+    if (g == m->n_zone)
+      group_faces(out, f, links, sheets, 0, f->n_cell, g, f->n_face, n_quad);
+    vg_output_text(out, "))\n");
+    before += n;
+  }
 }
 
 static void put_interior(struct vg_output *out, struct vg_fluent *f,
@@ -290,7 +427,8 @@ static void put_sheets(struct vg_output *out, const struct vg_fluent *f,
 
       if (m->sheet_of[t] != i) continue;
       vg_half_face_nodes(links, s->code, node);
-      put_face(out, f, 3, 3, node, s->mate + 1, (s->code >> 3) + 1);
+      put_face(out, f, 3, 3, node, number_of(f, s->mate),
+               number_of(f, s->code >> 3));
     }
     vg_output_text(out, "))\n");
     before += n;
@@ -327,10 +465,12 @@ static void put_all(struct vg_output *out, struct vg_fluent *f,
   f->at_point = out->written;
   put_points(out, f, links != NULL);
   vg_output_text(out, "))\n");
-  put_cells(out, f, links != NULL);
+  if (f->number) put_zone_cells(out, f);
+  else put_cells(out, f, links != NULL);
   vg_output_format(out, "(13 (0 1 %llx 0 0))\n",
                    (unsigned long long)(f->n_internal + m->n_tri + m->n_quad));
-  put_interior(out, f, links, sheets);
+  if (f->number && links) put_interiors(out, f, links, sheets);
+  else put_interior(out, f, links, sheets);
   put_sheets(out, f, links, sheets);
   for (size_t p = 0; p < m->n_patch; p++) put_patch(out, f, p, links);
   put_names(out, f);
@@ -369,7 +509,7 @@ void vg_fluent_put_internal(struct vg_output *out, const struct vg_fluent *f,
                             int n, const uint32_t *node, uint32_t cell,
                             uint32_t mate)
 {
-  assert((n == 3 || n == 4) && node && cell < mate);
+  assert((n == 3 || n == 4) && node && cell < mate && !f->number);
   put_face(out, f, plain_kind(f), n, node, mate + 1, cell + 1);
 }
 
@@ -398,7 +538,8 @@ void vg_fluent_put_boundary(struct vg_output *out, const struct vg_fluent *f,
 
   assert(at < f->frame->n_tri + f->frame->n_quad);
   put_face(out, f, f->kind[patch_of(f, at)], is_tri ? 3 : 4,
-           is_tri ? f->frame->tri[i] : f->frame->quad[i - n_tri], cell + 1, 0);
+           is_tri ? f->frame->tri[i] : f->frame->quad[i - n_tri],
+           number_of(f, cell), 0);
 }
 
 /* --- the file ------------------------------------------------------------ */
@@ -440,20 +581,51 @@ static vg_status check_counts(const char *path, const struct vg_fluent *f,
   return VG_OK;
 }
 
-/* Words of the patches and, after them, of the sheets. NULL: no memory. */
+/* Words of the patches and, after them, of the sheets and zones. NULL: no
+ * memory. */
 static char (*make_words(const struct vg_mesh *m))[VG_PATCH_WORD]
 {
-  struct vg_mesh all = { .n_patch = m->n_patch + m->n_sheet };
+  struct vg_mesh all = { .n_patch = m->n_patch + m->n_sheet + m->n_zone };
+  struct vg_patch *zone;
   char(*word)[VG_PATCH_WORD] = NULL;
 
-  all.patch = vg_alloc(all.n_patch, sizeof *all.patch);
+  all.patch = vg_calloc(all.n_patch, sizeof *all.patch);
   if (!all.patch) return NULL;
   if (m->n_patch) memcpy(all.patch, m->patch, m->n_patch * sizeof *m->patch);
   if (m->n_sheet)
     memcpy(all.patch + m->n_patch, m->sheet, m->n_sheet * sizeof *m->sheet);
+  zone = all.patch + m->n_patch + m->n_sheet;
+  for (size_t z = 0; z < m->n_zone; z++) {
+    zone[z].id = m->zone[z].id;
+    snprintf(zone[z].name, VG_NAME_MAX, *m->zone[z].name ? "%s" : "zone",
+             m->zone[z].name);
+  }
   word = vg_patch_words(&all, VG_PATCH_WORD_MOST);
   free(all.patch);
   return word;
+}
+
+/* Numbers the cells so that zones follow each other. */
+static vg_status number_cells(struct vg_fluent *f, struct vg_error *err)
+{
+  const struct vg_mesh *m = f->frame;
+  uint32_t next = 0;
+
+  f->number = vg_alloc(f->n_cell, sizeof *f->number);
+  f->zone = vg_alloc(f->n_cell, sizeof *f->zone);
+  f->n_face = vg_calloc(2 * (m->n_zone + 1), sizeof *f->n_face);
+  if (!f->number || !f->zone || !f->n_face)
+    return vg_fail_memory(err, "the zones");
+  for (uint32_t z = 0; z < m->n_zone; z++)
+    for (int k = 0; k < VG_FLUENT_KINDS; k++) {
+      const uint64_t first = f->first[k] + vg_mesh_zone_start(m, z, k);
+
+      for (uint64_t c = first; c < first + m->zone[z].n_cell[k]; c++) {
+        f->number[c] = next++;
+        f->zone[c] = z;
+      }
+    }
+  return VG_OK;
 }
 
 vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
@@ -480,6 +652,7 @@ vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
     VG_TRY(vg_fail_memory(err, "the names of the patches"));
   VG_TRY(vg_boundary_by_patch(frame, &f->start, &f->order, err));
   for (size_t p = 0; p < frame->n_patch; p++) f->kind[p] = patch_kind(f, p);
+  if (frame->n_zone) VG_TRY(number_cells(f, err));
   st = find_places(f, err);
 done:
   if (st < 0) vg_fluent_release(f);
@@ -493,6 +666,9 @@ void vg_fluent_release(struct vg_fluent *f)
   free(f->order);
   free(f->kind);
   free(f->at_patch);
+  free(f->number);
+  free(f->zone);
+  free(f->n_face);
   memset(f, 0, sizeof *f);
 }
 

@@ -13,18 +13,21 @@
 #define VG_FLUENT_SUFFIX "fluent.msh"
 
 /** Write the cells as zone "fluid", the faces between them as zone "interior",
- * and one zone per patch. Names of patches are those of vg_patch_words; a zone
- * whose name a patch has is called "fluid_1" or "interior_1". Each sheet is
- * another zone of the type interior. The type of a zone follows from its
- * boundary condition: wall, symmetry, pressure-far-field, pressure-inlet or
- * pressure-outlet; a patch without a condition is a wall. Cells keep their
- * order: tetrahedra, pyramids, prisms, hexahedra. The right-hand normal of a
- * face points into its first cell; boundary faces have no second cell. Numbers
- * are written in columns of one width, so that all ranks can write one file.
- * Reals read back to the same bits. VG_ERR_INPUT: no cells, or the boundary
- * does not close the cells; VG_ERR_UNSUPPORTED: more faces than an OpenFOAM
- * mesh can have (io/mesh/foam.h); VG_ERR_IO, VG_ERR_MEMORY. No file is left on
- * failure. O(n); memory 16 bytes per tetrahedron and 16 per point. */
+ * and one zone per patch. A mesh with zones has a zone of cells, of the type
+ * fluid or solid, and one of faces, "interior_NAME", for each of them; faces
+ * between two of them that are in no sheet are the zone "interior_between".
+ * Names of patches are those of vg_patch_words; a zone whose name a patch has
+ * is called "fluid_1" or "interior_1". Each sheet is another zone of the type
+ * interior. The type of a zone follows from its boundary condition: wall,
+ * symmetry, pressure-far-field, pressure-inlet or pressure-outlet; a patch
+ * without a condition is a wall. Cells keep their order, in each zone:
+ * tetrahedra, pyramids, prisms, hexahedra. The right-hand normal of a face
+ * points into its first cell; boundary faces have no second cell. Numbers are
+ * written in columns of one width, so that all ranks can write one file. Reals
+ * read back to the same bits. VG_ERR_INPUT: no cells, or the boundary does not
+ * close the cells; VG_ERR_UNSUPPORTED: more faces than an OpenFOAM mesh can
+ * have (io/mesh/foam.h); VG_ERR_IO, VG_ERR_MEMORY. No file is left on failure.
+ * O(n); memory 16 bytes per tetrahedron and 16 per point. */
 vg_status vg_fluent_write(const char *path, const struct vg_mesh *m,
                           struct vg_error *err);
 
@@ -35,7 +38,7 @@ enum { VG_FLUENT_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 /** Layout of a file; determined by the counts. */
 struct vg_fluent {
   const struct vg_mesh *frame;
-  char (*word)[VG_PATCH_WORD]; /* [n_patch + n_sheet] */
+  char (*word)[VG_PATCH_WORD]; /* [n_patch + n_sheet + n_zone] */
   size_t *start, *order;       /* from vg_boundary_by_patch */
   int width;                   /* width of a number */
   int *kind;                   /* [n_patch] 3 or 4 vertices per face, 0: both */
@@ -43,6 +46,11 @@ struct vg_fluent {
   uint64_t n_internal, n_quad; /* number of faces between cells; number of
                                   those with four vertices */
   uint64_t at_point, at_cell, at_internal, *at_patch; /* offsets in the file */
+  /* With zones: [n_cell] number of a cell in the file, in which zones follow
+   * each other, and its zone. Slices have none. */
+  uint32_t *number, *zone;
+  uint64_t *n_face; /* [2 (n_zone + 1)] faces of the zones of faces, and those
+                       of them with four vertices */
 };
 
 /** Compute the layout.

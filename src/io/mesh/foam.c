@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "core/mesh/cell_links.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
 #include "io/stream/patch_words.h"
@@ -455,14 +456,59 @@ done:
   return st;
 }
 
-static vg_status write_zones(const struct writing *w, struct vg_error *err)
+/* Cells have the numbers of the mesh, kind after kind. */
+static void put_cell_labels(struct vg_output *o, const struct vg_mesh *m,
+                            size_t z)
+{
+  const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+  uint64_t before = 0;
+
+  vg_output_format(o, "        cellLabels      List<label>\n%llu\n(\n",
+                   (unsigned long long)vg_mesh_zone_cells(m, z));
+  for (int k = 0; k < VG_ZONE_KINDS; before += n[k++]) {
+    const uint64_t first = before + vg_mesh_zone_start(m, z, k);
+
+    for (uint64_t c = 0; c < m->zone[z].n_cell[k]; c++) {
+      vg_output_int(o, (int64_t)(first + c));
+      vg_output_bytes(o, "\n", 1);
+    }
+  }
+  vg_output_text(o, ")\n;\n");
+}
+
+static vg_status put_cell_zones(const struct writing *w, struct vg_output *o,
+                                struct vg_error *err)
+{
+  const struct vg_mesh *m = w->m;
+  char(*name)[VG_PATCH_WORD] = vg_zone_words(m, VG_PATCH_WORD_MOST);
+
+  if (!name) return vg_fail_memory(err, "the zones");
+  vg_foam_header(o, "regIOobject", location, VG_FOAM_CELL_ZONES, 1, NULL);
+  vg_output_format(o, "\n%zu\n(\n", m->n_zone);
+  for (size_t z = 0; z < m->n_zone; z++) {
+    vg_output_format(o, "    %s\n    {\n        type            cellZone;\n",
+                     name[z]);
+    put_cell_labels(o, m, z);
+    vg_output_text(o, "    }\n");
+  }
+  vg_output_text(o, ")\n");
+  free(name);
+  return VG_OK;
+}
+
+/* Writes a file of zones with `put`. */
+static vg_status write_zones(const struct writing *w, const char *name,
+                             vg_status (*put)(const struct writing *w,
+                                              struct vg_output *o,
+                                              struct vg_error *err),
+                             struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
-  char *path = vg_foam_path(w->folder, VG_FOAM_ZONES);
+  char *path = vg_foam_path(w->folder, name);
   vg_status st = path ? vg_output_open(path, &out, err)
                       : vg_fail_memory(err, "a file name");
 
-  if (st >= 0) st = put_zones(w, &out, err);
+  if (st >= 0) st = put(w, &out, err);
   if (st >= 0) st = vg_output_commit(&out, err);
   vg_output_release(&out);
   free(path);
@@ -491,7 +537,11 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
   put_points(w);
   if ((st = put_topology(w, err)) < 0) return st;
   if ((st = put_boundary(w, err)) < 0) return st;
-  if (w->m->n_sheet && (st = write_zones(w, err)) < 0) return st;
+  if (w->m->n_sheet && (st = write_zones(w, VG_FOAM_ZONES, put_zones, err)) < 0)
+    return st;
+  if (w->m->n_zone &&
+      (st = write_zones(w, VG_FOAM_CELL_ZONES, put_cell_zones, err)) < 0)
+    return st;
   for (int i = 0; i < VG_FOAM_FILES; i++)
     if ((st = vg_output_commit(w->out + i, err)) < 0) return st;
   return VG_OK;
@@ -499,9 +549,11 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
 
 static void remove_mesh(const char *folder)
 {
-  for (int i = 0; i <= VG_FOAM_FILES; i++) {
+  for (int i = 0; i < VG_FOAM_FILES + 2; i++) {
     char *path = vg_foam_path(folder, i < VG_FOAM_FILES ? vg_foam_file[i]
-                                                        : VG_FOAM_ZONES);
+                                      : i == VG_FOAM_FILES
+                                        ? VG_FOAM_ZONES
+                                        : VG_FOAM_CELL_ZONES);
 
     if (path) unlink(path);
     free(path);

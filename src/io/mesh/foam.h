@@ -3,6 +3,7 @@
  *
  * A case is a folder:
  *   CASE/constant/polyMesh/{points,faces,owner,neighbour,boundary}
+ *   CASE/constant/polyMesh/cellZones  if the mesh has zones
  *   CASE/constant/polyMesh/faceZones  if the mesh has sheets, a zone for each,
  *                  with the normals of the sheet
  *   CASE/system/{controlDict,fvSchemes,fvSolution}  written only if absent,

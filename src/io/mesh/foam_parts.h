@@ -32,6 +32,7 @@ enum { VG_FOAM_FILES = 5 };
 extern const char *const vg_foam_file[VG_FOAM_FILES];
 
 #define VG_FOAM_ZONES "faceZones"
+#define VG_FOAM_CELL_ZONES "cellZones"
 
 /** Write the header of an OpenFOAM file; note may be NULL. */
 struct vg_output;

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 #include "io/cad/cad.h"
 #include "io/cgns/cgns.h"
 #include "io/mesh/aflr.h"
@@ -106,7 +107,17 @@ static vg_status write_cogsg(const char *path, const struct vg_mesh *m,
 static vg_status write_vtu(const char *path, const struct vg_mesh *m,
                            struct vg_error *err)
 {
-  return vg_vtu_write(path, m, NULL, 0, err);
+  struct vg_vtu_field zone = { VG_VTU_ZONE, VG_VTU_CELL, VG_VTU_INT32, 1,
+                               NULL };
+  int32_t *id = NULL;
+  vg_status st;
+
+  VG_TRY(vg_mesh_zone_numbers(m, &id, err));
+  zone.data = id;
+  st = vg_vtu_write(path, m, &zone, id != NULL, err);
+done:
+  free(id);
+  return st;
 }
 
 static vg_status write_foam(const char *path, const struct vg_mesh *m,
@@ -444,6 +455,7 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
   if (found.n_cell) VG_TRY(read_sheets(path, &m, err));
   VG_TRY(vg_mesh_take_inner(&m, &found.inner, err));
   VG_TRY(check_sheets(path, &m, err));
+  VG_TRY(vg_mesh_mark_interfaces(&m, err));
   forgive_sheets(&m, &found.match);
   if (found.turned.loose_face >= found.inner.n_copy)
     found.turned.loose_face -= found.inner.n_copy;

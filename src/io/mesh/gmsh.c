@@ -58,18 +58,18 @@ static int is_empty(const struct vg_gmsh *g, size_t patch)
 
 static void put_head(struct vg_output *out, const struct vg_gmsh *g)
 {
-  int has_cells = count_cells(g) > 0;
   static const int32_t one = 1;
 
   vg_output_text(out, "$MeshFormat\n4.1 1 8\n");
   vg_output_i32(out, 1, &one);
   vg_output_format(out, "\n$EndMeshFormat\n$PhysicalNames\n%zu\n",
-                   g->n_surface + (size_t)has_cells);
+                   g->n_surface + g->n_volume);
   for (size_t p = 0; p < g->frame->n_patch; p++)
     if (!is_empty(g, p))
       vg_output_format(out, "2 %d \"%s\"\n", (int)tag_of(g, p), g->word[p]);
-  if (has_cells)
-    vg_output_format(out, "3 %d \"%s\"\n", (int)g->volume, g->volume_word);
+  for (size_t v = 0; v < g->n_volume; v++)
+    vg_output_format(out, "3 %d \"%s\"\n", (int)(g->volume + (int32_t)v),
+                     g->volume_word[v]);
   vg_output_text(out, "$EndPhysicalNames\n");
 }
 
@@ -81,10 +81,12 @@ static int is_border(const struct vg_gmsh *g, size_t patch)
   return !is_empty(g, patch) && !g->frame->patch[patch].is_sheet;
 }
 
+/* Those of several volumes are not listed. */
 static size_t count_borders(const struct vg_gmsh *g)
 {
   size_t n = 0;
 
+  if (g->n_volume > 1) return 0;
   for (size_t p = 0; p < g->frame->n_patch; p++) n += is_border(g, p);
   return n;
 }
@@ -95,9 +97,10 @@ static size_t count_borders(const struct vg_gmsh *g)
 static uint64_t entities_size(const struct vg_gmsh *g)
 {
   /* tag, box, number of groups, group, number of bounding entities */
-  uint64_t one = 4 + 6 * 8 + 8 + 4 + 8, size = 4 * 8 + g->n_surface * one;
+  uint64_t one = 4 + 6 * 8 + 8 + 4 + 8;
+  uint64_t size = 4 * 8 + (g->n_surface + g->n_volume) * one;
 
-  if (count_cells(g)) size += one + 4 * count_borders(g);
+  if (g->n_volume) size += 4 * count_borders(g);
   return strlen(ENTITIES) + size + strlen(ENTITIES_END);
 }
 
@@ -138,13 +141,13 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
                           const double (*x)[3])
 {
   double all[6] = { 0, 0, 0, 0, 0, 0 }, box[6];
-  int is_first = 1, has_cells = count_cells(g) > 0;
+  int is_first = 1;
 
   vg_output_text(out, ENTITIES);
   put_size(out, 0);
   put_size(out, 0);
   put_size(out, g->n_surface);
-  put_size(out, (uint64_t)has_cells);
+  put_size(out, g->n_volume);
   for (size_t p = 0; p < g->frame->n_patch; p++) {
     if (is_empty(g, p)) continue;
     patch_box(g, p, x, box);
@@ -154,9 +157,9 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
     widen(all, box);
     widen(all, box + 3);
   }
-  if (has_cells) {
-    put_entity(out, g->volume, all, g->volume, count_borders(g));
-    for (size_t p = 0; p < g->frame->n_patch; p++) {
+  for (int32_t v = 0; v < (int32_t)g->n_volume; v++) {
+    put_entity(out, g->volume + v, all, g->volume + v, count_borders(g));
+    for (size_t p = 0; p < g->frame->n_patch && count_borders(g); p++) {
       int32_t inward = -tag_of(g, p); /* surfaces are oriented as our faces,
                                          inward */
 
@@ -203,6 +206,8 @@ void vg_gmsh_put_tags(struct vg_output *out, uint64_t point, size_t n)
 
 /* --- elements --- */
 
+#define HEAD_SIZE (3 * 4 + 8) /* bytes of the head of a block */
+
 static void put_block(struct vg_output *out, int32_t dimension, int32_t tag,
                       int32_t type, uint64_t n)
 {
@@ -242,6 +247,12 @@ static size_t first_quad(const struct vg_gmsh *g, size_t patch)
   return i;
 }
 
+/* Cells of a kind in volume v, which follow those of the volumes before. */
+static uint64_t cells_in(const struct vg_gmsh *g, int kind, size_t v)
+{
+  return g->frame->n_zone ? g->frame->zone[v].n_cell[kind] : g->n_cell[kind];
+}
+
 static void put_elements_head(struct vg_output *out, const struct vg_gmsh *g)
 {
   uint64_t n_block = 0, n = count_faces(g) + count_cells(g), tag = 1;
@@ -252,7 +263,8 @@ static void put_elements_head(struct vg_output *out, const struct vg_gmsh *g)
 
     n_block += (quad > g->face_first[p]) + (quad < g->face_first[p + 1]);
   }
-  for (int k = 0; k < VG_GMSH_KINDS; k++) n_block += g->n_cell[k] > 0;
+  for (int k = 0; k < VG_GMSH_KINDS; k++)
+    for (size_t v = 0; v < g->n_volume; v++) n_block += cells_in(g, k, v) > 0;
   vg_output_text(out, "$Elements\n");
   put_size(out, n_block);
   put_size(out, n);
@@ -323,11 +335,20 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
                                                 (const uint32_t *)m->hex };
 
   for (int k = 0; k < VG_GMSH_KINDS; k++) {
-    if (g->n_cell[k])
-      put_block(out, VOLUME, g->volume, kinds[k].type, g->n_cell[k]);
+    uint64_t first = 0;
+
     at[k] = out->written;
-    if (!m->point) vg_output_skip(out, g->n_cell[k] * cell_size(k));
-    else vg_gmsh_put_cells(out, g, k, 0, (size_t)g->n_cell[k], cell[k], NULL);
+    for (size_t v = 0; v < g->n_volume; v++) {
+      const uint64_t n = cells_in(g, k, v);
+
+      if (!n) continue;
+      put_block(out, VOLUME, g->volume + (int32_t)v, kinds[k].type, n);
+      if (!m->point) vg_output_skip(out, n * cell_size(k));
+      else
+        vg_gmsh_put_cells(out, g, k, first, (size_t)n,
+                          cell[k] + first * (size_t)kinds[k].n_node, NULL);
+      first += n;
+    }
   }
 }
 
@@ -371,7 +392,34 @@ static vg_status find_places(struct vg_gmsh *g, struct vg_error *err)
   return VG_OK;
 }
 
-/* Number surfaces and the volume, and name the volume. Some programs look up a
+/* Names of the volumes that no surface and no other volume has. */
+static vg_status name_volumes(struct vg_gmsh *g, struct vg_error *err)
+{
+  const struct vg_mesh *m = g->frame;
+  const size_t n = m->n_patch + g->n_volume;
+  char(*word)[VG_PATCH_WORD] = vg_zone_words(m, VG_PATCH_WORD_MOST);
+  char(*used)[VG_PATCH_WORD] = vg_alloc(n, sizeof *used);
+
+  g->volume_word = vg_alloc(g->n_volume, sizeof *g->volume_word);
+  if (word && used && g->volume_word) {
+    if (m->n_patch) memcpy(used, g->word, m->n_patch * sizeof *used);
+    for (size_t v = 0; v < g->n_volume; v++) {
+      vg_patch_free_word((const char(*)[VG_PATCH_WORD])used, m->n_patch + v,
+                         m->n_zone ? word[v] : "fluid", g->volume_word[v]);
+      memcpy(used[m->n_patch + v], g->volume_word[v], sizeof *used);
+    }
+  }
+  if (!word || !used || !g->volume_word) {
+    free(word);
+    free(used);
+    return vg_fail_memory(err, "the names of the zones");
+  }
+  free(word);
+  free(used);
+  return VG_OK;
+}
+
+/* Number surfaces and volumes. Some programs look up a
  * group by its number or name alone, without the dimension, so both are unique
  * over dimensions. */
 static void number_groups(struct vg_gmsh *g)
@@ -386,9 +434,8 @@ static void number_groups(struct vg_gmsh *g)
     g->has_ids &= id > 0 && id < INT32_MAX;
     if (id > last) last = id;
   }
+  g->has_ids &= last <= INT32_MAX - (int32_t)(g->n_volume + 1);
   g->volume = 1 + (g->has_ids ? last : (int32_t)m->n_patch);
-  vg_patch_free_word((const char(*)[VG_PATCH_WORD])g->word, m->n_patch, "fluid",
-                     g->volume_word);
 }
 
 vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
@@ -408,7 +455,9 @@ vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
   g->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
   if (!g->word) return vg_fail_memory(err, "the names of the patches");
   VG_TRY(vg_boundary_by_patch(frame, &g->face_first, &g->face, err));
+  g->n_volume = !count_cells(g) ? 0 : frame->n_zone ? frame->n_zone : 1;
   number_groups(g);
+  VG_TRY(name_volumes(g, err));
   g->first[0] = count_faces(g) + 1;
   for (int k = 1; k < VG_GMSH_KINDS; k++)
     g->first[k] = g->first[k - 1] + g->n_cell[k - 1];
@@ -421,9 +470,10 @@ done:
 void vg_gmsh_release(struct vg_gmsh *g)
 {
   free(g->word);
+  free(g->volume_word);
   free(g->face_first);
   free(g->face);
-  g->word = NULL;
+  g->word = g->volume_word = NULL;
   g->face_first = g->face = NULL;
 }
 
@@ -442,8 +492,15 @@ void vg_gmsh_seek_points(struct vg_output *out, const struct vg_gmsh *g,
 void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g, int kind,
                        uint64_t cell)
 {
+  uint64_t before = 0, n_head = 0;
+
   assert(kind >= 0 && kind < VG_GMSH_KINDS);
-  vg_output_seek(out, g->at[kind] + cell * cell_size(kind));
+  for (size_t v = 0; v < g->n_volume && before <= cell; v++) {
+    n_head += cells_in(g, kind, v) > 0;
+    before += cells_in(g, kind, v);
+  }
+  vg_output_seek(out,
+                 g->at[kind] + n_head * HEAD_SIZE + cell * cell_size(kind));
 }
 
 vg_status vg_gmsh_write(const char *path, const struct vg_mesh *m,

@@ -5,13 +5,14 @@
 
 #include "core/mesh/mesh.h"
 
-/* The name of a physical group of surfaces. */
+/* The name of a physical group of surfaces or volumes. */
 struct vg_gmsh_name {
+  int dimension;
   int64_t tag; /* number of the group */
   char text[VG_NAME_MAX];
 };
 
-/* The surface of a face and the physical group of that surface; 0: the surface
+/* The surface of a face, or the volume of a cell, and its physical group; 0: it
  * is not in a group. */
 struct vg_gmsh_group {
   int64_t surface, physical;
@@ -27,5 +28,14 @@ vg_status vg_gmsh_set_patches(struct vg_mesh *m,
                               struct vg_gmsh_group *const face[2],
                               size_t n_name, const struct vg_gmsh_name *name,
                               const char *path, struct vg_error *err);
+
+/** Create the zones of a mesh from the volumes of its cells, by the same rules;
+ * a mesh whose cells have one number has none.
+ * @param cell  of tetrahedra, pyramids, prisms, hexahedra, [n] each
+ * Cells are sorted by their zones. Errors as vg_gmsh_set_patches. */
+vg_status vg_gmsh_set_zones(struct vg_mesh *m,
+                            struct vg_gmsh_group *const cell[4], size_t n_name,
+                            const struct vg_gmsh_name *name, const char *path,
+                            struct vg_error *err);
 
 #endif

@@ -14,12 +14,14 @@ enum { VG_GMSH_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 /** Layout of a file; determined by counts and boundary of the frame. */
 struct vg_gmsh {
   const struct vg_mesh *frame;
-  char (*word)[VG_PATCH_WORD];     /* [n_patch] */
-  size_t *face_first, *face;       /* from vg_boundary_by_patch */
-  size_t n_surface;                /* number of patches with faces */
-  int has_ids;                     /* patches keep their ids */
-  int32_t volume;                  /* number of the volume and of its group */
-  char volume_word[VG_PATCH_WORD]; /* name of that group */
+  char (*word)[VG_PATCH_WORD]; /* [n_patch] */
+  size_t *face_first, *face;   /* from vg_boundary_by_patch */
+  size_t n_surface;            /* number of patches with faces */
+  int has_ids;                 /* patches keep their ids */
+  size_t n_volume;             /* 1 with cells, or the number of zones */
+  int32_t volume; /* number of the first volume and of its group; the others
+                     follow */
+  char (*volume_word)[VG_PATCH_WORD]; /* [n_volume] names of these groups */
   uint64_t n_cell[VG_GMSH_KINDS];
   /* Offsets in the file. */
   uint64_t at_entities, at_tag, at_point, at[VG_GMSH_KINDS];
@@ -55,7 +57,8 @@ void vg_gmsh_put_tags(struct vg_output *out, uint64_t point, size_t n);
 void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g, int kind,
                        uint64_t cell);
 
-/** Write n cells of a kind, starting with number `cell`. Their points are node,
+/** Write n cells of a kind and one zone, starting with number `cell`. Their
+ * points are node,
  * or number[node] if number is not NULL. */
 void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g, int kind,
                        uint64_t cell, size_t n, const uint32_t *node,

@@ -47,13 +47,14 @@ struct reader {
   int binary, wide; /* wide: sizes have 8 bytes */
   struct vg_mesh m;
   size_t cap_point, cap[N_ELEMENT];
-  struct vg_gmsh_group *face[2]; /* [n_tri], [n_quad] surface and group of
-                                    each face */
-  size_t cap_face[2];
-  struct vg_gmsh_name *name; /* names of the physical groups of surfaces */
+  struct vg_gmsh_group *of[N_ELEMENT]; /* surface or volume and group of each
+                                          face and cell, by element */
+  size_t cap_of[N_ELEMENT];
+  struct vg_gmsh_name *name; /* names of the physical groups */
   size_t n_name, cap_name;
-  struct vg_gmsh_group *group; /* groups of the surfaces, sorted by surface */
-  size_t n_group, cap_group;
+  /* Groups of the surfaces and of the volumes, sorted by surface or volume. */
+  struct vg_gmsh_group *group[2];
+  size_t n_group[2], cap_group[2];
   struct numbered *node; /* [n_point] sorted by tag */
   int is_run; /* tags are consecutive: first_tag, first_tag + 1, ... */
   int seen_nodes;
@@ -146,9 +147,10 @@ static vg_status read_name(struct reader *r, struct vg_error *err)
   if (last == first)
     return vg_input_fail(r->in, err,
                          "the name of a physical group has no closing quote");
-  if (v[0] != 2) return VG_OK;
+  if (v[0] != 2 && v[0] != 3) return VG_OK;
   if (vg_reserve(&r->name, &r->cap_name, r->n_name + 1, sizeof *r->name))
     return vg_fail_memory(err, "the names of the patches");
+  r->name[r->n_name].dimension = (int)v[0];
   r->name[r->n_name].tag = v[1];
   vg_name_from_file(first + 1, (size_t)(last - first - 1),
                     r->name[r->n_name++].text, VG_NAME_MAX);
@@ -182,6 +184,7 @@ static vg_status read_entity(struct reader *r, int dimension,
 {
   static const char what[] = "an entity";
   int64_t tag, n, physical = 0;
+  const int k = dimension - 2;
   double box[6];
   vg_status st;
 
@@ -194,11 +197,12 @@ static vg_status read_entity(struct reader *r, int dimension,
     VG_TRY(read_sizes(r, 1, &n, what, err));
     VG_TRY(skip_ints(r, n, what, err));
   }
-  if (dimension != 2) return VG_OK;
-  if (vg_reserve(&r->group, &r->cap_group, r->n_group + 1, sizeof *r->group))
+  if (dimension < 2) return VG_OK;
+  if (vg_reserve(&r->group[k], &r->cap_group[k], r->n_group[k] + 1,
+                 sizeof **r->group))
     return vg_fail_memory(err, "the surfaces");
   /* Negative: the group contains the surface with reversed orientation. */
-  r->group[r->n_group++] = (struct vg_gmsh_group){ tag, llabs(physical) };
+  r->group[k][r->n_group[k]++] = (struct vg_gmsh_group){ tag, llabs(physical) };
 done:
   return st;
 }
@@ -223,24 +227,27 @@ static vg_status read_entities(struct reader *r, struct vg_error *err)
     VG_TRY(check_count(r, n[d], 0, 1, "entities", err));
     for (int64_t i = 0; i < n[d]; i++) VG_TRY(read_entity(r, d, err));
   }
-  if (r->n_group) qsort(r->group, r->n_group, sizeof *r->group, by_surface);
+  for (int k = 0; k < 2; k++)
+    if (r->n_group[k])
+      qsort(r->group[k], r->n_group[k], sizeof **r->group, by_surface);
 done:
   return st;
 }
 
-static int64_t physical_of(const struct reader *r, int64_t surface)
+static int64_t physical_of(const struct reader *r, int dimension,
+                           int64_t surface)
 {
-  size_t lo = 0, hi = r->n_group;
+  const struct vg_gmsh_group *group = r->group[dimension - 2];
+  const size_t n = r->n_group[dimension - 2];
+  size_t lo = 0, hi = n;
 
   while (lo < hi) {
     size_t mid = lo + (hi - lo) / 2;
 
-    if (r->group[mid].surface < surface) lo = mid + 1;
+    if (group[mid].surface < surface) lo = mid + 1;
     else hi = mid;
   }
-  return lo < r->n_group && r->group[lo].surface == surface
-         ? r->group[lo].physical
-         : 0;
+  return lo < n && group[lo].surface == surface ? group[lo].physical : 0;
 }
 
 /* --- nodes --- */
@@ -404,6 +411,14 @@ static vg_status unknown_type(const struct reader *r, int64_t code,
                  r->in->path, (long long)code);
 }
 
+static size_t count_of(const struct vg_mesh *m, enum element e)
+{
+  const size_t n[N_ELEMENT] = { 0,        m->n_tri, m->n_quad, m->n_tet,
+                                m->n_pyr, m->n_pri, m->n_hex };
+
+  return n[e];
+}
+
 static vg_status reserve_elements(struct reader *r, enum element e, int64_t n,
                                   struct vg_error *err)
 {
@@ -423,10 +438,9 @@ static vg_status reserve_elements(struct reader *r, enum element e, int64_t n,
   default: break;
   }
 #undef MORE
-  if (!bad && (e == TRI || e == QUAD))
-    bad = vg_reserve(&r->face[e - TRI], &r->cap_face[e - TRI],
-                     (e == TRI ? m->n_tri : m->n_quad) + (size_t)n,
-                     sizeof **r->face);
+  if (!bad && e != SKIPPED)
+    bad = vg_reserve(&r->of[e], &r->cap_of[e], count_of(m, e) + (size_t)n,
+                     sizeof **r->of);
   return bad ? vg_fail_memory(err, "the elements") : VG_OK;
 }
 
@@ -436,9 +450,10 @@ static uint32_t *next_element(struct reader *r, enum element e,
 {
   struct vg_mesh *m = &r->m;
 
+  r->of[e][count_of(m, e)] = group;
   switch (e) {
-  case TRI: r->face[0][m->n_tri] = group; return m->tri[m->n_tri++];
-  case QUAD: r->face[1][m->n_quad] = group; return m->quad[m->n_quad++];
+  case TRI: return m->tri[m->n_tri++];
+  case QUAD: return m->quad[m->n_quad++];
   case TET: return m->tet[m->n_tet++];
   case PYR: return m->pyr[m->n_pyr++];
   case PRI: return m->pri[m->n_pri++];
@@ -479,8 +494,9 @@ static vg_status read_block_4(struct reader *r, struct vg_error *err)
   n_value = 1 + (size_t)t->n_node;
   VG_TRY(check_count(r, n, n_value, 0, "elements", err));
   VG_TRY(reserve_elements(r, t->element, n, err));
-  if (head[0] == 2)
-    group = (struct vg_gmsh_group){ head[1], physical_of(r, head[1]) };
+  if (head[0] == 2 || head[0] == 3)
+    group = (struct vg_gmsh_group){ head[1],
+                                    physical_of(r, (int)head[0], head[1]) };
   for (int64_t i = 0; i < n; i++) {
     VG_TRY(read_sizes(r, n_value, v, "the elements", err));
     VG_TRY(take_element(r, t, v[0], v + 1, group, err));
@@ -731,7 +747,10 @@ static vg_status finish(struct reader *r, struct vg_error *err)
                    r->in->path);
   VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
                          err));
-  VG_TRY(vg_gmsh_set_patches(m, r->face, r->n_name, r->name, r->in->path, err));
+  VG_TRY(
+    vg_gmsh_set_patches(m, r->of + TRI, r->n_name, r->name, r->in->path, err));
+  VG_TRY(
+    vg_gmsh_set_zones(m, r->of + TET, r->n_name, r->name, r->in->path, err));
   if (!has_cells) vg_mesh_keep_boundary(m);
   VG_TRY(vg_mesh_turn(m, NULL, err));
 done:
@@ -747,9 +766,9 @@ vg_status vg_gmsh_parse(struct vg_input *in, struct vg_mesh *out,
   if (st == VG_OK) st = finish(&r, err);
   if (st == VG_OK) vg_mesh_move(out, &r.m);
   vg_mesh_release(&r.m);
-  for (int k = 0; k < 2; k++) free(r.face[k]);
+  for (int e = 0; e < N_ELEMENT; e++) free(r.of[e]);
+  for (int k = 0; k < 2; k++) free(r.group[k]);
   free(r.name);
-  free(r.group);
   free(r.node);
   return st;
 }

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 #include "io/mesh/gmf.h"
 #include "io/stream/convention.h"
 
@@ -28,7 +29,7 @@ struct reader {
   struct vg_gmf g;
   int seen[N_SECTION];
   struct vg_mesh m;
-  int32_t *tri_tag, *quad_tag;
+  int32_t *tag[N_SECTION]; /* references; NULL: none are read */
 };
 
 /* --- sections of a mesh --- */
@@ -55,13 +56,13 @@ static int section_allocate(struct reader *r, int section, size_t n)
 #define GIVE(array, count)                                                     \
   (m->array = vg_alloc(n, sizeof *m->array), m->count = m->array ? n : 0,      \
    m->array ? 0 : -1)
+  if (section != VERTICES) {
+    r->tag[section] = vg_alloc(n, sizeof **r->tag);
+    if (!r->tag[section]) return -1;
+  }
   switch (section) {
-  case TRIANGLES:
-    r->tri_tag = vg_alloc(n, sizeof *r->tri_tag);
-    return r->tri_tag ? GIVE(tri, n_tri) : -1;
-  case QUADS:
-    r->quad_tag = vg_alloc(n, sizeof *r->quad_tag);
-    return r->quad_tag ? GIVE(quad, n_quad) : -1;
+  case TRIANGLES: return GIVE(tri, n_tri);
+  case QUADS: return GIVE(quad, n_quad);
   case TETS: return GIVE(tet, n_tet);
   case PYRAMIDS: return GIVE(pyr, n_pyr);
   case PRISMS: return GIVE(pri, n_pri);
@@ -102,9 +103,7 @@ static vg_status read_entities(struct reader *r, int section,
   int n_node = s->n_node;
   size_t n;
   uint32_t *node = section_get(&r->m, section, &n);
-  int32_t *tag = section == TRIANGLES ? r->tri_tag
-               : section == QUADS     ? r->quad_tag
-                                      : NULL;
+  int32_t *tag = r->tag[section];
 
   for (size_t i = 0; i < n; i++, node += n_node) {
     int64_t v[9];
@@ -118,11 +117,10 @@ static vg_status read_entities(struct reader *r, int section,
                        r->g.in->path, s->name, i + 1, (long long)v[k]);
       node[section == PYRAMIDS ? pyramid_slot[k] : k] = (uint32_t)(v[k] - 1);
     }
-    if (!tag) continue;
     if (v[n_node] < -INT32_MAX || v[n_node] > INT32_MAX)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: %s number %zu: reference %lld does not fit into a "
-                     "32-bit patch number",
+                     "32-bit number of a patch or zone",
                      r->g.in->path, s->name, i + 1, (long long)v[n_node]);
     tag[i] = (int32_t)v[n_node];
   }
@@ -273,15 +271,34 @@ static vg_status check_nodes(const struct reader *r, struct vg_error *err)
                  r->g.in->path);
 }
 
+/* Joins the references of the sections from `first` on, n in total. */
+static int32_t *join(struct reader *r, int first, int end, size_t n)
+{
+  int32_t *tag = vg_alloc(n, sizeof *tag), *to = tag;
+
+  for (int s = first; tag && s < end; s++) {
+    section_get(&r->m, s, &n);
+    if (n) memcpy(to, r->tag[s], n * sizeof *to);
+    to += n;
+  }
+  return tag;
+}
+
+/* Patches from the references of faces, zones from those of cells. */
 static vg_status join_tags(struct reader *r, struct vg_error *err)
 {
-  size_t n_tri = r->m.n_tri, n_quad = r->m.n_quad;
-  int32_t *tag = vg_realloc(r->tri_tag, n_tri + n_quad, sizeof *tag);
+  struct vg_mesh *m = &r->m;
+  int32_t *tag = join(r, TRIANGLES, TETS, m->n_tri + m->n_quad);
+  vg_status st = tag ? vg_patches_from_tags(m, tag, err)
+                     : vg_fail_memory(err, "the patches");
 
-  if (!tag) return vg_fail_memory(err, "the patches");
-  r->tri_tag = tag;
-  if (n_quad) memcpy(tag + n_tri, r->quad_tag, n_quad * sizeof *tag);
-  return vg_patches_from_tags(&r->m, tag, err);
+  free(tag);
+  if (st < 0) return st;
+  tag = join(r, TETS, N_SECTION, m->n_tet + m->n_pyr + m->n_pri + m->n_hex);
+  st = tag ? vg_mesh_zones_from_tags(m, tag, 0, err)
+           : vg_fail_memory(err, "the zones");
+  free(tag);
+  return st;
 }
 
 vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
@@ -299,8 +316,7 @@ vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
   vg_mesh_move(out, &r.m);
 done:
   vg_mesh_release(&r.m);
-  free(r.tri_tag);
-  free(r.quad_tag);
+  for (int s = 0; s < N_SECTION; s++) free(r.tag[s]);
   return st;
 }
 
@@ -358,11 +374,18 @@ static void put_entities(struct writer *w, int section)
   int n_node = sections[section].n_node;
   size_t n;
   const uint32_t *node = section_get(m, section, &n);
+  uint64_t end = 0;
+  size_t z = 0;
 
   for (size_t i = 0; i < n; i++, node += n_node) {
     int32_t ref = section == TRIANGLES ? m->patch[m->tri_patch[i]].id
                 : section == QUADS     ? m->patch[m->quad_patch[i]].id
                                        : 0;
+
+    if (section >= TETS && m->n_zone) {
+      vg_mesh_zone_walk(m, section - TETS, i, &z, &end);
+      ref = m->zone[z].id;
+    }
 
     for (int k = 0; k < n_node; k++)
       put_int(w, (int64_t)node[section == PYRAMIDS ? pyramid_slot[k] : k] + 1,

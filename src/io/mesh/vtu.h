@@ -16,6 +16,7 @@ enum vg_vtu_type { VG_VTU_FLOAT64, VG_VTU_FLOAT32, VG_VTU_INT32 };
 
 /* Name of the cell data that holds the solver partition of each cell. */
 #define VG_VTU_SOLVER_PART "solver_part"
+#define VG_VTU_ZONE "zone"
 
 /** One result array; the data are borrowed. */
 struct vg_vtu_field {

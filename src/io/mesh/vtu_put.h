@@ -9,7 +9,7 @@
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
 
-#define VG_VTU_FIELDS_MAX 3
+#define VG_VTU_FIELDS_MAX 4
 
 /* Offsets in the file of the data of each array. */
 struct vg_vtu_places {

@@ -75,7 +75,14 @@ vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
   struct vg_mesh frame;
   struct vg_cgns c = { .frame = &frame };
   const struct vg_slice_file file = { path, 0, &c, put_frame, put_slice };
-  vg_status st = vg_mesh_sheet_view(&plain, &frame, err);
+  vg_status st;
+
+  if (s->boundary->n_zone)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: a distributed mesh with zones cannot be written in "
+                   "this form; collect it first",
+                   path);
+  st = vg_mesh_sheet_view(&plain, &frame, err);
 
   if (st >= 0 && !vg_comm_rank(comm))
     st = vg_cgns_plan(path, &frame, NULL, &c, err);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .vtu with the bytes of vg_vtu_write. */
 #include "core/judge/quality.h"
+#include "core/mesh/zones.h"
 #include "io/slices/slices_parts.h"
 
 /* Values per write call; two blocks of 128 kB are on the stack. */
@@ -10,7 +11,8 @@ struct whole {
   struct vg_mesh mesh; /* frame of the file */
   struct vg_vtu_field field[VG_VTU_FIELDS_MAX];
   size_t n_field, n_quality; /* 0 or 2 quality fields of tetrahedra; then the
-                                solver partition, if there is one */
+                                solver partition and the zone, if there are
+                                any */
   struct vg_vtu_places at;
 };
 
@@ -54,6 +56,22 @@ static void put_parts(const struct whole *w, const struct vg_slice *slice,
                   slice->n_cell[kind] * sizeof(uint32_t));
 }
 
+/* Numbers of the zones of the cells, in the last field. */
+static void put_zones(const struct whole *w, const struct vg_slice *slice,
+                      int kind, uint64_t first, struct vg_output *out)
+{
+  const struct vg_mesh *m = &w->mesh;
+  uint64_t end = 0;
+  size_t z = 0;
+
+  vg_output_seek(out, w->at.field[w->n_field - 1] +
+                        sizeof(int32_t) * (first + slice->cell_at[kind]));
+  for (size_t c = 0; c < slice->n_cell[kind]; c++) {
+    vg_mesh_zone_walk(m, kind, slice->cell_at[kind] + c, &z, &end);
+    vg_output_bytes(out, &m->zone[z].id, sizeof m->zone[z].id);
+  }
+}
+
 static void put_whole_slice(void *of, const struct vg_slice *slice,
                             struct vg_output *out)
 {
@@ -76,7 +94,8 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
                                       slice->cell_at[k] * vg_slice_width[k] };
 
     if (c.n) vg_vtu_put_cells(out, &w->at, &c);
-    if (c.n && w->n_field > w->n_quality) put_parts(w, slice, k, first, out);
+    if (c.n && slice->part[k]) put_parts(w, slice, k, first, out);
+    if (c.n && w->mesh.n_zone) put_zones(w, slice, k, first, out);
     first += n[k];
     first_node += n[k] * vg_slice_width[k];
   }
@@ -95,6 +114,8 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
   };
   const struct vg_vtu_field parts = { VG_VTU_SOLVER_PART, VG_VTU_CELL,
                                       VG_VTU_INT32, 1, NULL };
+  const struct vg_vtu_field zones = { VG_VTU_ZONE, VG_VTU_CELL, VG_VTU_INT32, 1,
+                                      NULL };
   struct vg_slice_file f = { path, 0, &w, put_whole_frame, put_whole_slice };
   uint64_t size = 0;
   vg_status st;
@@ -104,6 +125,7 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
     w.n_quality = 2;
   w.n_field = w.n_quality;
   if (s->n_part) w.field[w.n_field++] = parts;
+  if (w.mesh.n_zone) w.field[w.n_field++] = zones;
   st = vg_slice_file_size(&f, &size, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return st;

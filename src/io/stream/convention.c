@@ -16,6 +16,7 @@
 #include "core/geometry/volume.h"
 #include "core/mesh/cell_faces.h"
 #include "core/mesh/sheets.h"
+#include "core/mesh/zones.h"
 
 static int is_in_range(double x)
 {
@@ -680,6 +681,7 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->pri = NULL;
   m->hex = NULL;
   m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
+  vg_mesh_drop_zones(m);
   vg_mesh_drop_sheets(m);
   if (!new_index) return; /* keeping unused points is harmless */
   memset(new_index, 0xff, m->n_point * sizeof *new_index);

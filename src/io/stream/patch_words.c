@@ -98,3 +98,22 @@ void vg_patch_free_word(const char (*used)[VG_PATCH_WORD], size_t n,
       i = SIZE_MAX; /* compare with all again */
     }
 }
+
+char (*vg_zone_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
+{
+  struct vg_mesh zones = { .n_patch = m->n_zone };
+  char(*word)[VG_PATCH_WORD];
+
+  zones.patch = vg_calloc(m->n_zone, sizeof *zones.patch);
+  if (!zones.patch) return NULL;
+  for (size_t z = 0; z < m->n_zone; z++) {
+    struct vg_patch *p = &zones.patch[z];
+
+    p->id = m->zone[z].id;
+    memcpy(p->name, m->zone[z].name, sizeof p->name);
+    if (!*p->name) snprintf(p->name, sizeof p->name, "zone_%d", (int)p->id);
+  }
+  word = vg_patch_words(&zones, most);
+  free(zones.patch);
+  return word;
+}

@@ -18,6 +18,10 @@
  * Returns [n_patch], to be freed; NULL if there is not enough memory. */
 char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD];
 
+/** Names of all zones by the same rules, [n_zone]; a zone without a name is
+ * called "zone_ID". */
+char (*vg_zone_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD];
+
 /** Store `word` in out, or the first of word_1, word_2, ... that differs from
  * the n words of `used`. Upper and lower case do not distinguish words. */
 void vg_patch_free_word(const char (*used)[VG_PATCH_WORD], size_t n,

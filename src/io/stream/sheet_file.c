@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 #include "io/stream/convention.h"
 #include "io/stream/stream.h"
 
@@ -21,13 +22,22 @@ static void put_sheet(struct vg_output *out, const struct vg_mesh *m, size_t i)
   size_t n = 0;
 
   for (size_t t = 0; t < m->n_sheet_tri; t++) n += m->sheet_of[t] == i;
-  vg_output_format(out, "sheet %d %zu%s%s\n", (int)p->id, n,
+  vg_output_format(out, "%s %d %zu%s%s\n",
+                   p->is_interface ? "interface" : "sheet", (int)p->id, n,
                    *p->name ? " " : "", p->name);
   for (size_t t = 0; t < m->n_sheet_tri; t++)
     for (int k = 0; k < 3 && m->sheet_of[t] == i; k++) {
       vg_output_int(out, (int64_t)m->sheet_tri[t][k] + 1);
       vg_output_text(out, k < 2 ? " " : "\n");
     }
+}
+
+static void put_zone(struct vg_output *out, const struct vg_zone *z)
+{
+  vg_output_format(out, "zone %d %s", (int)z->id, vg_zone_kind_word[z->kind]);
+  for (int k = 0; k < VG_ZONE_KINDS; k++)
+    vg_output_format(out, " %" PRIu64, z->n_cell[k]);
+  vg_output_format(out, "%s%s\n", *z->name ? " " : "", z->name);
 }
 
 vg_status vg_sheet_file_write(const char *path, const struct vg_mesh *m,
@@ -40,6 +50,7 @@ vg_status vg_sheet_file_write(const char *path, const struct vg_mesh *m,
   if (st < 0) return st;
   vg_output_text(&out, TITLE "\n# Faces between cells, by points from 1\n");
   vg_output_format(&out, "mesh %" PRIu64 " %" PRIu64 "\n", n_point, n_cell);
+  for (size_t z = 0; z < m->n_zone; z++) put_zone(&out, &m->zone[z]);
   for (size_t i = 0; i < m->n_sheet; i++) put_sheet(&out, m, i);
   st = vg_output_commit(&out, err);
   vg_output_release(&out);
@@ -66,8 +77,9 @@ struct reading {
   struct vg_input *in;
   const struct vg_mesh *m;
   struct vg_patch *sheet;
+  struct vg_zone *zone;
   uint32_t (*tri)[3], *of;
-  size_t n_sheet, n_tri, cap_sheet, cap_tri, cap_of;
+  size_t n_sheet, n_tri, n_zone, cap_sheet, cap_tri, cap_of, cap_zone;
 };
 
 static vg_status expect(struct vg_input *in, const char *word,
@@ -155,12 +167,86 @@ static vg_status check_number(const struct reading *r, int64_t id,
                  r->in->path, r->in->line, id, what);
 }
 
-static vg_status read_sheet(struct reading *r, struct vg_error *err)
+static void read_name(struct reading *r, char name[VG_NAME_MAX])
 {
-  struct vg_patch *p;
+  const char *text;
+  size_t len;
+
+  if (!vg_input_line(r->in, &text, &len)) return;
+  while (len && *text == ' ') {
+    text++;
+    len--;
+  }
+  vg_name_from_file(text, len, name, VG_NAME_MAX);
+}
+
+static vg_status read_zone(struct reading *r, struct vg_error *err)
+{
+  struct vg_zone *z;
   const char *text;
   int64_t id, n;
   size_t len;
+  vg_status st;
+
+  VG_TRY(vg_input_int(r->in, &id, "the number of a zone", err));
+  for (size_t i = 0; i < r->n_zone; i++)
+    if (r->zone[i].id == id)
+      return vg_input_fail(r->in, err, "two zones have the number %" PRId64,
+                           id);
+  if (vg_reserve(&r->zone, &r->cap_zone, r->n_zone + 1, sizeof *r->zone))
+    return vg_fail_memory(err, "the zones");
+  z = &r->zone[r->n_zone++];
+  *z = (struct vg_zone){ .id = (int32_t)id };
+  if (id < 1 || id > INT32_MAX || !vg_input_token(r->in, &text, &len))
+    return vg_input_fail(r->in, err, "a zone has a number above 0 and a kind");
+  while (z->kind < VG_ZONE_KINDS &&
+         !vg_token_is(text, len, vg_zone_kind_word[z->kind]))
+    z->kind++;
+  if (z->kind == VG_ZONE_KINDS)
+    return vg_input_fail(r->in, err,
+                         "the kind of a zone is fluid, rotating, porous or "
+                         "solid, not %.*s",
+                         len < 40 ? (int)len : 40, text);
+  for (int k = 0; k < VG_ZONE_KINDS; k++) {
+    VG_TRY(vg_input_int(r->in, &n, "the number of cells of a zone", err));
+    if (n < 0)
+      return vg_input_fail(r->in, err, "a zone has %" PRId64 " cells", n);
+    z->n_cell[k] = (uint64_t)n;
+  }
+  read_name(r, z->name);
+done:
+  return st;
+}
+
+/* Every cell is in a zone. */
+static vg_status check_zones(const struct reading *r, struct vg_error *err)
+{
+  const struct vg_mesh *m = r->m;
+  const size_t has[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+  static const char *const word[VG_ZONE_KINDS] = { "tetrahedra", "pyramids",
+                                                   "prisms", "hexahedra" };
+
+  for (int k = 0; k < VG_ZONE_KINDS && r->n_zone; k++) {
+    uint64_t n = 0;
+
+    for (size_t z = 0; z < r->n_zone && n <= has[k]; z++) {
+      if (r->zone[z].n_cell[k] > has[k]) n = has[k];
+      n += r->zone[z].n_cell[k];
+    }
+    if (n != has[k])
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: the zones do not have all %zu %s of the mesh, or "
+                     "more; remove the file if it belongs to another mesh",
+                     r->in->path, has[k], word[k]);
+  }
+  return VG_OK;
+}
+
+static vg_status read_sheet(struct reading *r, int is_interface,
+                            struct vg_error *err)
+{
+  struct vg_patch *p;
+  int64_t id, n;
   vg_status st;
 
   VG_TRY(vg_input_int(r->in, &id, "the number of a sheet", err));
@@ -175,14 +261,9 @@ static vg_status read_sheet(struct reading *r, struct vg_error *err)
                           .bc = VG_BC_NONE,
                           .bc_fun3d = VG_BC_NONE,
                           .family = VG_BC_NONE,
-                          .is_sheet = 1 };
-  if (vg_input_line(r->in, &text, &len)) {
-    while (len && *text == ' ') {
-      text++;
-      len--;
-    }
-    vg_name_from_file(text, len, p->name, sizeof p->name);
-  }
+                          .is_sheet = 1,
+                          .is_interface = is_interface };
+  read_name(r, p->name);
   st = read_triangles(r, n, err);
 done:
   return st;
@@ -223,12 +304,25 @@ vg_status vg_sheet_file_parse(struct vg_input *in, struct vg_mesh *m,
   in->comment = '#';
   VG_TRY(read_owner(&r, err));
   while (vg_input_token(in, &text, &len)) {
-    if (!vg_token_is(text, len, "sheet"))
-      VG_TRY(vg_input_fail(in, err, "the word sheet is expected here"));
-    VG_TRY(read_sheet(&r, err));
+    const int is_interface = vg_token_is(text, len, "interface");
+
+    if (vg_token_is(text, len, "zone")) st = read_zone(&r, err);
+    else if (is_interface || vg_token_is(text, len, "sheet"))
+      st = read_sheet(&r, is_interface, err);
+    else
+      st = vg_input_fail(in, err,
+                         "the word sheet, interface or zone is expected here");
+    if (st < 0) goto done;
   }
-  st = append(&r, m, err);
+  VG_TRY(check_zones(&r, err));
+  VG_TRY(append(&r, m, err));
+  if (!r.n_zone) goto done;
+  assert(!m->n_zone && !m->zone);
+  m->zone = r.zone;
+  m->n_zone = r.n_zone;
+  r.zone = NULL;
 done:
+  free(r.zone);
   free(r.sheet);
   free(r.tri);
   free(r.of);

@@ -12,7 +12,7 @@
 int vg_boundary_wants_inner(const struct vg_boundary *b)
 {
   const struct vg_settings *s = &b->read->settings;
-  int wants = *s->baffles || *s->sheets;
+  int wants = *s->baffles || *s->sheets || *s->zone_interfaces;
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role > VG_PATCH_WALL;
@@ -22,19 +22,23 @@ int vg_boundary_wants_inner(const struct vg_boundary *b)
 const char *vg_inner_source(const struct vg_settings *s, char *text,
                             size_t size)
 {
-  const char *baffles = s->baffles, *sheets = s->sheets;
+  const char *const name[] = { "baffles ", "sheets ", "zone_interfaces ",
+                               "the table patches" };
+  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "" };
   int has_role = 0;
+  size_t n = 0;
 
   for (size_t i = 0; i < s->n_patch; i++)
     has_role |= s->patch[i].role > VG_PATCH_WALL;
-  snprintf(text, size, "%s%.60s%s%s%.60s%s%s", *baffles ? "baffles " : "",
-           baffles, *baffles && *sheets ? ", " : "", *sheets ? "sheets " : "",
-           sheets, has_role && (*baffles || *sheets) ? ", " : "",
-           has_role ? "the table patches" : "");
+  for (size_t i = 0; i < 4 && n < size; i++)
+    if (*list[i] || (i == 3 && has_role))
+      n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
+                            name[i], list[i]);
   return text;
 }
 
-static const char *const role_name[] = { "auto", "wall", "baffle", "sheet" };
+static const char *const role_name[] = { "auto", "a wall", "a baffle",
+                                         "a sheet", "an interface" };
 
 /* Gives the marked patches a role. from: [n_patch] setting that gave a patch
  * its role, or NULL */
@@ -48,7 +52,7 @@ static vg_status give(const struct vg_mesh *m, const uint8_t *on, int role,
     if (!on[i]) continue;
     if (from[i] && of[i] != role)
       return vg_fail(err, VG_ERR_INPUT,
-                     "patch %d%s%s is a %s by %s, and a %s by %s; remove it "
+                     "patch %d%s%s is %s by %s, and %s by %s; remove it "
                      "from one of them",
                      (int)p->id, *p->name ? " " : "", p->name, role_name[of[i]],
                      from[i], role_name[role], setting);
@@ -83,6 +87,8 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     give_list(m, "baffles", s->baffles, VG_PATCH_BAFFLE, on, role, from, err));
   VG_TRY(
     give_list(m, "sheets", s->sheets, VG_PATCH_SHEET, on, role, from, err));
+  VG_TRY(give_list(m, "zone_interfaces", s->zone_interfaces, VG_PATCH_INTERFACE,
+                   on, role, from, err));
   for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
     const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
 

@@ -12,6 +12,7 @@
 #include "core/mesh/edges.h"
 #include "core/sides/inner.h"
 #include "run/input/shape_parts.h"
+#include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
 
@@ -99,11 +100,13 @@ static vg_status add_back(struct vg_boundary *b, size_t i, int role,
   back->family = m->patch[i].family;
   m->patch[i].inner = VG_INNER_FRONT;
   back->inner = VG_INNER_BACK;
-  m->patch[i].is_sheet = back->is_sheet = role == VG_PATCH_SHEET;
-  if (role == VG_PATCH_SHEET)
+  m->patch[i].is_sheet = back->is_sheet = role >= VG_PATCH_SHEET;
+  m->patch[i].is_interface = back->is_interface = role == VG_PATCH_INTERFACE;
+  if (role >= VG_PATCH_SHEET)
     vg_note(b->notes,
-            "patch %d%s%s is a sheet: its triangles are faces between cells",
-            (int)m->patch[i].id, *name ? " " : "", m->patch[i].name);
+            "patch %d%s%s is %s: its triangles are faces between cells",
+            (int)m->patch[i].id, *name ? " " : "", m->patch[i].name,
+            role == VG_PATCH_SHEET ? "a sheet" : "an interface");
   else
     vg_note(
       b->notes,
@@ -119,9 +122,10 @@ static vg_status add_backs(struct vg_boundary *b, size_t n, const uint8_t *role,
 {
   vg_status st = VG_OK;
 
-  for (int r = VG_PATCH_BAFFLE; r <= VG_PATCH_SHEET; r++)
+  for (int r = 0; r < 2; r++)
     for (size_t i = 0; i < n && st >= 0; i++)
-      if (role[i] == r) st = add_back(b, i, r, err);
+      if (role[i] && (role[i] >= VG_PATCH_SHEET) == r)
+        st = add_back(b, i, role[i], err);
   return st;
 }
 
@@ -247,7 +251,7 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   const struct vg_surface_report *r = &b->check;
   uint8_t *on = vg_calloc(m->n_patch, 1), *is_sheet = vg_calloc(m->n_tri, 1);
   const struct vg_settings *s = &b->read->settings;
-  const int has_list = *s->baffles || *s->sheets;
+  const int has_list = *s->baffles || *s->sheets || *s->zone_interfaces;
   char list[48] = "";
 
   for (size_t i = 0; on && i < r->n_defect; i++)
@@ -428,6 +432,7 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
             "edges: %zu pairs of triangles, the narrowest %.3g wide near "
             "(%g, %g, %g); cells in them are flat",
             r.n_near, r.gap, r.at[0], r.at[1], r.at[2]);
+  st = vg_boundary_add_zones(b, err);
 done:
   free(is_inner);
   free(back);

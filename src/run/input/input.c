@@ -25,6 +25,7 @@
 #include "run/input/share.h"
 #include "run/input/sizes.h"
 #include "run/input/wall_shear.h"
+#include "run/input/zone_table.h"
 #include "run/input/mesh_unit.h"
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
@@ -70,6 +71,7 @@ static void release_files(struct vg_input_files *f)
 
 void vg_boundary_release(struct vg_boundary *b)
 {
+  vg_boundary_forget_zones(b);
   vg_boundary_forget_gaps(b);
   if (b->common.data) vg_shmem_release(&b->common);
   else vg_mesh_release(&b->surface);

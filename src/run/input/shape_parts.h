@@ -51,9 +51,10 @@ const char *vg_inner_source(const struct vg_settings *s, char *text,
 
 /** The roles of the patches of m that are inner surfaces.
  *
- * @param role  out: [m->n_patch] VG_PATCH_AUTO, VG_PATCH_BAFFLE, VG_PATCH_SHEET
- * VG_ERR_INPUT for a patch that the surface does not have, and for a patch with
- * two roles; the message names both requests. VG_ERR_MEMORY. */
+ * @param role  out: [m->n_patch] VG_PATCH_AUTO, VG_PATCH_BAFFLE,
+ * VG_PATCH_SHEET, VG_PATCH_INTERFACE VG_ERR_INPUT for a patch that the surface
+ * does not have, and for a patch with two roles; the message names both
+ * requests. VG_ERR_MEMORY. */
 vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
                          uint8_t *role, struct vg_error *err);
 

@@ -11,6 +11,7 @@
 #include "io/vgrid/mapbc.h"
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
+#include "run/input/zone_table.h"
 #include "run/settings/deck.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
@@ -635,6 +636,7 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
     VG_TRY(vg_boundary_put_inner(b, show, err));
     st = defects(b, show, err);
   }
+  if (st >= 0) st = vg_zones_check(b, err);
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

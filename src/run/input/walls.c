@@ -133,10 +133,11 @@ static vg_status refuse_sheet(const struct vg_mesh *m,
     if (m->patch[i].is_sheet && reason[i] != VG_WALL_NOT)
       return vg_fail(
         err, VG_ERR_INPUT,
-        "layers are requested on patch %d%s%s, but it is a sheet, "
+        "layers are requested on patch %d%s%s, but it is %s, "
         "through which the mesh continues; remove it from the "
         "list walls and from the table layers, or make it a baffle",
-        (int)m->patch[i].id, *m->patch[i].name ? " " : "", m->patch[i].name);
+        (int)m->patch[i].id, *m->patch[i].name ? " " : "", m->patch[i].name,
+        m->patch[i].is_interface ? "an interface" : "a sheet");
   return VG_OK;
 }
 

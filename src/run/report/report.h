@@ -13,6 +13,7 @@
 #include "core/judge/plane_quality.h"
 #include "core/judge/quality.h"
 #include "core/judge/sheet_sides.h"
+#include "core/judge/zone_quality.h"
 #include "core/mesh/mesh.h"
 #include "core/surface/surface_check.h"
 #include "partition/solver/solver.h"
@@ -57,6 +58,14 @@ void vg_report_sheets_text(FILE *to, const struct vg_mesh *m,
                            const struct vg_sheet_report *r);
 json_t *vg_report_sheets_json(const struct vg_mesh *m,
                               const struct vg_sheet_report *r);
+
+/** Zones of m with their figures r [n_zone]: number, kind, cells, volume,
+ * smallest dihedral angle and name. Without zones, or if r is NULL, the text is
+ * empty and the list has no items. */
+void vg_report_zones_text(FILE *to, const struct vg_mesh *m,
+                          const struct vg_zone_report *r);
+json_t *vg_report_zones_json(const struct vg_mesh *m,
+                             const struct vg_zone_report *r);
 
 /** Unit of length (enum vg_cad_unit), shells, repairs, triangle quality, and
  * the number of defects of each kind with a description of the first `shown`

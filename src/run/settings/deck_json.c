@@ -244,6 +244,7 @@ union table_row {
   struct vg_layer_row layer;
   struct vg_surface_row surface;
   struct vg_wake_row wake;
+  struct vg_zone_row zone;
   struct vg_source source;
   struct vg_sweep_row sweep;
   struct vg_adapt_row adapt;

@@ -274,15 +274,17 @@ vg_status vg_settings_copy(struct vg_settings *to,
   vg_status st = VG_OK;
 
   assert(to != from && !to->source && !to->patch);
-  assert(!to->layer_row && !to->surface_row && !to->wake_row);
+  assert(!to->layer_row && !to->surface_row && !to->wake_row && !to->zone);
   s.source = NULL;
   s.patch = NULL;
   s.layer_row = NULL;
   s.surface_row = NULL;
   s.wake_row = NULL;
   s.n_wake = s.cap_wake = 0;
+  s.zone = NULL;
   s.n_source = s.cap_source = s.n_patch = s.cap_patch = 0;
   s.n_layer = s.cap_layer = s.n_surface = s.cap_surface = 0;
+  s.n_zone = s.cap_zone = 0;
   for (int k = VG_TABLE_PATCHES; k <= VG_TABLE_SOURCES; k++) {
     enum vg_table_kind kind = (enum vg_table_kind)k;
 

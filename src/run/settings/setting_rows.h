@@ -89,6 +89,12 @@ VG_TEXT_ROW(plain, sheets, VG_LIST_MAX, "sheets", "",
   .pattern = vg_patch_list_pattern, .help = "Patches that become named faces "
   "between cells, through which the mesh continues: actuator disks, wakes, "
   "planes for monitors, by number or name, as in 7,disk*")
+VG_TEXT_ROW(plain, zone_interfaces, VG_LIST_MAX, "zone_interfaces", "",
+  .topic = VG_TOPIC_SURFACE,
+  .unit = "", .check = vg_patch_list_check,
+  .pattern = vg_patch_list_pattern, .help = "Sheets that enclose zones of "
+  "cells, alone or with walls and other patches, by number or name, as in "
+  "7,rotor*; the table zones names the zones")
 VG_ROW(WORD, cad, unit, "unit", cad.unit,
   .use = VG_USE_ALWAYS, .words = unit_words, .unit = "", .help = "Unit of "
   "length of the mesh. A CAD model, and a surface with a file_unit, are "

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "core/fill/fill.h"
 #include "core/flow/flow.h"
+#include "core/mesh/zones.h"
 #include "core/remesh/remesh.h"
 #include "io/cad/cad.h"
 #include "layers/columns/growth_law.h"
@@ -160,8 +161,8 @@ static const struct vg_param farfield_columns[] = {
   .offset = offsetof(struct vg_patch_row, field),                              \
   .size = sizeof((struct vg_patch_row *)0)->field
 
-static const char *const role_words[] = { "auto", "wall", "baffle", "sheet",
-                                          NULL };
+static const char *const role_words[] = { "auto",  "wall",      "baffle",
+                                          "sheet", "interface", NULL };
 
 static const struct vg_param patch_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_patch_row, id_name), .required = 1,
@@ -178,9 +179,40 @@ static const struct vg_param patch_columns[] = {
   { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "",
     .help = "Keep the borders of this patch when the surface is remeshed" },
   { "role", AT(role), .type = VG_PARAM_WORD, .words = role_words, .unit = "",
-    .help = "wall: fluid on one side; baffle, sheet: an inner surface, as in "
-            "the settings baffles and sheets; auto: by these settings" },
+    .help =
+      "wall: fluid on one side; baffle, sheet, interface: an inner "
+      "surface, as in the settings baffles, sheets and zone_interfaces; auto: "
+      "by these settings" },
 };
+
+#undef AT
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_zone_row, field),                               \
+  .size = sizeof((struct vg_zone_row *)0)->field
+#define SEED(name, k)                                                          \
+  {                                                                            \
+    name, AT(seed[k]), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE,                \
+                       .hi = HUGE_SIZE, .unit = "length", .required = 1,       \
+                       .help = "A point in the zone, " name                    \
+  }
+
+static const struct vg_param zone_columns[] = {
+  { "name", AT(name), .type = VG_PARAM_TEXT, .unit = "", .required = 1,
+    .help = "Name of the zone" },
+  SEED("x", 0),
+  SEED("y", 1),
+  SEED("z", 2),
+  { "kind", AT(kind), .type = VG_PARAM_WORD, .words = vg_zone_kind_word,
+    .unit = "",
+    .help = "fluid, rotating, porous or solid: for formats that have kinds of "
+            "zones, and for reports" },
+  { "hmax", AT(hmax), .type = VG_PARAM_REAL, LENGTH,
+    .help = "Largest edge length in the zone; 0: as elsewhere" },
+  { "mesh", AT(mesh), .type = VG_PARAM_WORD, .words = answer_words, .unit = "",
+    .help = "no: the zone has no cells, and its interfaces are walls of the "
+            "others; auto: no for a solid" },
+};
+#undef SEED
 
 #undef AT
 #define AT(field)                                                              \
@@ -387,6 +419,9 @@ static const struct vg_setting_table tables[VG_TABLE_N] = {
                         "column: the global setting.",
                         layer_columns, COUNT(layer_columns),
                         sizeof(struct vg_layer_row) },
+  [VG_TABLE_ZONES] = { "zones", "Zones of cells, which interfaces enclose.",
+                       zone_columns, COUNT(zone_columns),
+                       sizeof(struct vg_zone_row) },
   [VG_TABLE_SOURCES] = { "sources",
                          "Sources of spacing in the volume. - or a missing "
                          "column: the default.",
@@ -428,6 +463,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
     ""
   };
   struct vg_surface_row surface = { .adjacent = VG_BC_NONE };
+  struct vg_zone_row zone = { .kind = VG_ZONE_FLUID };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
   struct vg_adapt_row adapt = { "", "", "", 0, NAN, NAN, NAN, NAN, NAN, NAN };
@@ -442,6 +478,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_LAYERS: memcpy(row, &layer, sizeof layer); break;
   case VG_TABLE_SURFACE: memcpy(row, &surface, sizeof surface); break;
   case VG_TABLE_WAKES: vg_wake_row_default(row); break;
+  case VG_TABLE_ZONES: memcpy(row, &zone, sizeof zone); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
   case VG_TABLE_ADAPT: memcpy(row, &adapt, sizeof adapt); break;
@@ -479,6 +516,7 @@ void vg_settings_release(struct vg_settings *s)
   free(s->layer_row);
   free(s->surface_row);
   free(s->wake_row);
+  free(s->zone);
   memset(s, 0, sizeof *s);
 }
 
@@ -511,6 +549,11 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
     refused = vg_reserve(&s->wake_row, &s->cap_wake, s->n_wake + 1,
                          sizeof *s->wake_row);
     if (!refused) memcpy(&s->wake_row[s->n_wake++], row, sizeof *s->wake_row);
+    break;
+  case VG_TABLE_ZONES:
+    refused = vg_reserve(&s->zone, &s->cap_zone, s->n_zone + 1,
+                         sizeof *s->zone);
+    if (!refused) memcpy(&s->zone[s->n_zone++], row, sizeof *s->zone);
     break;
   case VG_TABLE_SOURCES:
     refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
@@ -545,6 +588,7 @@ const void *vg_settings_row(const struct vg_settings *s,
   if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
   if (kind == VG_TABLE_SURFACE) return &s->surface_row[i];
   if (kind == VG_TABLE_WAKES) return &s->wake_row[i];
+  if (kind == VG_TABLE_ZONES) return &s->zone[i];
   return &s->source[i];
 }
 
@@ -557,6 +601,7 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
   if (kind == VG_TABLE_SURFACE) return s->n_surface;
   if (kind == VG_TABLE_WAKES) return s->n_wake;
+  if (kind == VG_TABLE_ZONES) return s->n_zone;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 

@@ -40,10 +40,20 @@ struct vg_farfield_row {
 
 /** What a patch is in the mesh. */
 enum vg_patch_role {
-  VG_PATCH_AUTO, /* as by the lists `baffles` and `sheets` */
+  VG_PATCH_AUTO, /* as by the lists `baffles`, `sheets`, `zone_interfaces` */
   VG_PATCH_WALL, /* part of the boundary, with fluid on one side */
   VG_PATCH_BAFFLE,
-  VG_PATCH_SHEET
+  VG_PATCH_SHEET,
+  VG_PATCH_INTERFACE /* a sheet that separates zones */
+};
+
+/** A zone of cells, which the interfaces around its seed point enclose. */
+struct vg_zone_row {
+  char name[VG_NAME_MAX];
+  double seed[3];
+  int kind;    /* VG_ZONE_... */
+  double hmax; /* largest edge; 0: as elsewhere */
+  int mesh;    /* enum vg_answer; auto: unless it is solid */
 };
 
 /** Name and condition of a patch. */
@@ -185,12 +195,13 @@ struct vg_settings {
   struct vg_adapt_row adapt;
   size_t n_sweep, n_adapt; /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
-  size_t n_surface, cap_surface, n_wake, cap_wake;
+  size_t n_surface, cap_surface, n_wake, cap_wake, n_zone, cap_zone;
   struct vg_source *source;           /* [n_source] owned */
   struct vg_patch_row *patch;         /* [n_patch] owned */
   struct vg_layer_row *layer_row;     /* [n_layer] owned */
   struct vg_surface_row *surface_row; /* [n_surface] owned */
   struct vg_wake_row *wake_row;       /* [n_wake] owned */
+  struct vg_zone_row *zone;           /* [n_zone] owned */
 };
 #define VG_SETTINGS_INIT                                                       \
   {                                                                            \
@@ -285,6 +296,7 @@ enum vg_table_kind {
   VG_TABLE_LAYERS,
   VG_TABLE_SURFACE,
   VG_TABLE_WAKES,
+  VG_TABLE_ZONES,
   VG_TABLE_SOURCES,
   VG_TABLE_SWEEP,
   VG_TABLE_ADAPT,

@@ -574,8 +574,10 @@ static vg_status write_item(struct writing *w, const char *item,
     return write_conditions(w, item, err);
   if (vg_outputs_has_plane(w->o, item))
     return vg_outputs_plane(w->o, w->comm, item, err);
-  /* A sheet has a zone of its own among the faces between cells. */
-  if (!strcmp(item, VG_FLUENT_SUFFIX) && w->mesh->boundary->n_sheet)
+  /* A sheet has a zone of its own among the faces between cells; the cells of a
+   * zone are together. */
+  if ((!strcmp(item, VG_FLUENT_SUFFIX) && w->mesh->boundary->n_sheet) ||
+      (!strcmp(item, "cgns") && w->mesh->boundary->n_zone))
     return write_whole(w, item, err);
   return vg_slices_can_write(item) ? write_slices(w, item, err)
                                    : write_whole(w, item, err);

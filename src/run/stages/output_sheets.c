@@ -35,10 +35,11 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   struct vg_error *err)
 {
   struct vg_foam_options options;
-  int wants = *s->sheets != 0, holds = vg_outputs_need_sheets(o);
+  int wants = *s->sheets || *s->zone_interfaces,
+      holds = vg_outputs_need_sheets(o);
 
   for (size_t i = 0; i < s->n_patch; i++)
-    wants |= s->patch[i].role == VG_PATCH_SHEET;
+    wants |= s->patch[i].role >= VG_PATCH_SHEET;
   for (size_t i = 0; i < o->n_item; i++)
     holds |= vg_foam_word(o->item[i], &options) ||
              vg_format_holds_sheets(o->item[i]);
@@ -61,6 +62,10 @@ static int loses_sheets(const char *form)
 void vg_outputs_note_sheets(const struct vg_outputs *o, const struct vg_mesh *m,
                             struct vg_notes *notes)
 {
+  for (size_t i = 0; i < o->n_item && m->n_zone; i++)
+    if (loses_sheets(o->item[i]))
+      vg_note(notes, ".%s has no zones: all cells are in one zone in it",
+              o->item[i]);
   for (size_t i = 0; i < o->n_item && m->n_sheet_tri; i++)
     if (loses_sheets(o->item[i]))
       vg_note(notes,
@@ -100,7 +105,7 @@ vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
   assert(o->temp_dir && !o->is_guest);
   st = look_for_sheets(o, &exists, &is_own, notes, err);
   if (st < 0 || (exists && !is_own)) return st;
-  if (!m->n_sheet_tri) {
+  if (!m->n_sheet_tri && !m->n_zone) {
     o->drops_sheets = is_own;
     return VG_OK;
   }

@@ -88,6 +88,10 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
     json_object_set_new(o, "sheets",
                         vg_report_sheets_json(r->run->slices.boundary,
                                               r->run->sheets));
+  if (r->run->zone_report)
+    json_object_set_new(o, "zones",
+                        vg_report_zones_json(r->run->slices.boundary,
+                                             r->run->zone_report));
   json_object_set_new(o, "limits_missed",
                       vg_report_mesh_limits_json(&p->asked, &r->run->judge));
   if (!p->read.is_section) {
@@ -270,6 +274,7 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
   else vg_report_mesh_text(to, &m->judge, 0);
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
   vg_report_wakes_text(to, &r->problem->read.wakes, m->n_probe, m->probe);
+  vg_report_zones_text(to, m->slices.boundary, m->zone_report);
   if (m->parts) {
     fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);

@@ -408,7 +408,8 @@ static vg_status prepare_flat(const struct vg_run *r,
 
 struct put {
   struct vg_run *run;
-  struct vg_sheet_sides *sides; /* NULL without sheets */
+  struct vg_sheet_sides *sides;  /* NULL without sheets */
+  struct vg_zone_quality *zones; /* NULL without zones */
   struct vg_display *show;
 };
 
@@ -420,6 +421,7 @@ static vg_status put_slice(void *context, const struct vg_slice *slice,
   vg_status st = vg_display_stopped(p->show, err);
 
   if (st >= 0) vg_sheet_sides_add(p->sides, slice);
+  if (st >= 0) st = vg_zone_quality_add(p->zones, slice, err);
   if (st >= 0) st = vg_outputs_put(r->outputs, slice, err);
   return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
 }
@@ -496,6 +498,7 @@ vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
   r->memory_of.numbers = vg_flat_bytes(flat);
   if (r->layers) r->memory_of.numbers += vg_layer_slices_bytes(r->layers);
   st = vg_sheet_sides_new(r->slices.boundary, &put.sides, err);
+  if (st >= 0) st = vg_zone_quality_new(r->slices.boundary, &put.zones, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
@@ -507,13 +510,15 @@ vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
   if (st >= 0) st = measure_wakes(r, &p->read.wakes, err);
   if (st >= 0) st = accept(r, layers != NULL, err);
   if (st >= 0) st = accept_sheets(r, &p->boundary.surface, &put, err);
+  if (st >= 0) st = vg_run_judge_zones(r, put.zones, err);
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
   st = vg_comm_agree(r->comm, st, err);
   if (st >= 0)
     st = vg_run_pictures_gather(&r->pictures, r->comm,
-                                is_section ? &r->slices
-                                           : vg_partition_slices(r->field),
+                                is_section || r->zones
+                                  ? &r->slices
+                                  : vg_partition_slices(r->field),
                                 r->slices.n_layer_cell[VG_SLICE_TET],
                                 r->threads,
                                 layers ? &r->field_judge : &r->judge, err);
@@ -521,6 +526,7 @@ done:
   vg_run_stage_ends(r, VG_STAGE_CHECK);
   vg_flat_free(flat);
   vg_sheet_sides_free(put.sides);
+  vg_zone_quality_free(put.zones);
   if (r->outputs)
     r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
   r->time_judge += vg_display_now() - t - r->time_put - r->pictures.time;
@@ -563,6 +569,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(stop_here(r, show, err));
   r->slices = *vg_partition_slices(r->field);
   VG_TRY(vg_comm_agree(r->comm, part_sheets(r, err), err));
+  VG_TRY(vg_run_sort_zones(r, p, err));
   st = vg_run_judge(r, p, NULL, sizing, show, err);
 done:
   vg_sizing_free(sizing);
@@ -687,6 +694,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             &r->layers, &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
+  VG_TRY(vg_run_sort_zones(r, p, err));
   VG_TRY(vg_run_judge(r, p, &layers->layers, sizing, show, err));
   st = measure_tops(r, p, layers, err);
 done:
@@ -735,6 +743,8 @@ void vg_run_release(struct vg_run *r, int success)
 {
   vg_solver_slices_close(r->parts);
   vg_run_pictures_release(&r->pictures);
+  vg_zone_slices_close(r->zones);
+  free(r->zone_report);
   vg_layer_slices_close(r->layers);
   vg_section_mesh_release(&r->section);
   vg_mesh_release(&r->parted_boundary);

@@ -10,6 +10,8 @@
 #include "core/judge/judge_slices.h"
 #include "core/judge/plane_quality.h"
 #include "core/judge/sheet_sides.h"
+#include "core/judge/zone_quality.h"
+#include "core/sides/zone_cells.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
 #include "partition/model/memory_stages.h"
@@ -82,7 +84,11 @@ struct vg_run {
   struct vg_mesh parted_boundary; /* Its boundary and its sheets, if it has
                                      sheets and no layers. */
   struct vg_sheet_report *sheets; /* [n_sheet] findings about sheets. */
-  struct vg_slices parted;        /* With solver partitions, if requested. */
+  struct vg_slices unsorted;      /* The mesh before its cells were sorted by
+                                     zones, if it has zones. */
+  struct vg_zone_slices *zones;
+  struct vg_zone_report *zone_report; /* [n_zone] figures of the zones. */
+  struct vg_slices parted; /* With solver partitions, if requested. */
   struct vg_solver_slices *parts;
   struct vg_solver_report solver;
   uint64_t n_field_cell;
@@ -127,6 +133,16 @@ vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
 
 /** The mesh as it is written. */
 const struct vg_slices *vg_run_slices(const struct vg_run *r);
+
+/** run/stages/run_zones.c: sorts the cells of r->slices by zones, if the
+ * surface has interfaces. Collective. */
+vg_status vg_run_sort_zones(struct vg_run *r, const struct vg_problem *p,
+                            struct vg_error *err);
+
+/** run/stages/run_zones.c: the figures of the zones in q, in r->zone_report.
+ * Collective. */
+vg_status vg_run_judge_zones(struct vg_run *r, const struct vg_zone_quality *q,
+                             struct vg_error *err);
 
 /** Number of cells of all kinds. */
 uint64_t vg_run_cells(const struct vg_run *r);

@@ -350,6 +350,7 @@ static void grows_layers(void)
   vanguard_job *job = new_cube();
   struct vanguard_wall w = VANGUARD_INIT(w);
   struct vanguard_patch p = VANGUARD_INIT(p);
+  struct vanguard_zone zone = VANGUARD_INIT(zone);
   struct arrays a;
 
   add_patch(job, "14", "4", "floor");
@@ -374,6 +375,7 @@ static void grows_layers(void)
   CHECK(!a.n.n_sheet && !a.n.n_sheet_tri && !vanguard_sheet_triangles(job) &&
         !vanguard_sheet_numbers(job));
   CHECK(vanguard_sheet(job, 0, &p) == VANGUARD_ERR_USAGE);
+  CHECK(!a.n.n_zone && vanguard_zone(job, 0, &zone) == VANGUARD_ERR_USAGE);
   drop(&a);
   vanguard_free(job);
 }

@@ -235,6 +235,29 @@ def test_sheets():
         assert np.isin(mesh.tetrahedra, face).sum(axis=1).tolist().count(3) == 2
 
 
+def test_zones():
+    """A cube in a cube is a zone of the cells."""
+    points, triangles, patches = (np.array(a) for a in cube(6))
+    inner, faces, _ = (np.array(a) for a in cube(3))
+    size = points.max()
+    job = vanguard.Job()
+    job.surface(np.concatenate([points, size / 4 + inner / 2]),
+                np.concatenate([triangles, len(points) + faces]),
+                np.concatenate([patches, np.full(len(faces), 20)]))
+    job.set(zone_interfaces="20", flow="internal", layers=False)
+    job.add("zones", name="core", x=size / 2, y=size / 2, z=size / 2,
+            kind="porous")
+    mesh = job.mesh()
+    assert [z["name"] for z in mesh.zones] == ["zone_1", "core"]
+    assert [z["kind"] for z in mesh.zones] == ["fluid", "porous"]
+    zone = mesh.cell_zones()
+    assert len(zone) == len(mesh.tetrahedra)
+    middle = mesh.points[mesh.tetrahedra].mean(axis=1)
+    inside = (abs(middle - size / 2) < size / 4).all(axis=1)
+    assert (inside == (zone == 1)).all()
+    assert not len(mesh.cell_zones("prisms"))
+
+
 def test_pyvista_arrays():
     """The arrays for pyvista, whether or not it is installed."""
     mesh = layered(*cube(6))
