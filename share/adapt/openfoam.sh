@@ -11,7 +11,7 @@
 # leaves
 #
 #     solution.vtu  the last time, by foamToVTK, with values at the points
-#     wall.vtu      the same file, if it has wallShearStress
+#     wall          its boundary, if it has wallShearStress
 #     outputs.csv   the last line of every postProcessing/NAME/TIME/*.dat
 #
 # The deck needs foam in the setting write. Exit status: that of the first
@@ -106,4 +106,6 @@ vtu=$(find VTK -name internal.vtu | tail -n 1)
 [ -n "$vtu" ] || die "foamToVTK left no internal.vtu in $case/VTK"
 outputs >"$folder/outputs.csv"
 cp "$vtu" "$folder/solution.vtu"
-! grep -qa "Name=.wallShearStress" "$vtu" || cp "$vtu" "$folder/wall.vtu"
+if grep -qa "Name=.wallShearStress" "$vtu"; then
+  cp -r "$(dirname "$vtu")/boundary" "$folder/wall"
+fi

@@ -4,6 +4,7 @@
 #include "cli/adapt/adapt.h"
 
 #include <ctype.h>
+#include <ftw.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +22,8 @@
 static const char *const solution_names[] = { "solution.vtu", "solution.csv",
                                               "solution.solb", "solution.sol" };
 enum { N_SOLUTION = sizeof solution_names / sizeof *solution_names };
-static const char *const wall_names[2] = { "wall.vtu", "wall.vtp" };
+static const char *const wall_names[] = { "wall", "wall.vtu", "wall.vtp" };
+enum { N_WALL = sizeof wall_names / sizeof *wall_names };
 
 /* --- child processes ------------------------------------------------------ */
 
@@ -108,9 +110,9 @@ static int has_file(const char *folder, const char *file)
 /* The skin friction on the walls of a solution; NULL: none. */
 static const char *wall_of(const struct vg_adapt_cycle *c)
 {
-  return has_file(c->dir, wall_names[0]) ? wall_names[0]
-       : has_file(c->dir, wall_names[1]) ? wall_names[1]
-                                         : NULL;
+  for (int i = 0; i < N_WALL; i++)
+    if (has_file(c->dir, wall_names[i])) return wall_names[i];
+  return NULL;
 }
 
 /* --- metric --------------------------------------------------------------- */
@@ -246,9 +248,9 @@ static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
   snprintf(name, sizeof name, "%.250s.report.json", a->stem);
   if (vg_adapt_path(c->dir, name, &path, NULL) < 0) return;
   o = json_load_file(path, 0, NULL);
-  field = json_object_get(o, "plane")   ? "plane"
-          : json_object_get(o, "field") ? "field"
-                                        : "mesh";
+  field = json_object_get(o, "plane") ? "plane"
+        : json_object_get(o, "field") ? "field"
+                                      : "mesh";
   c->cells = number_at(o, "mesh", "cells");
   c->points = number_at(o, "mesh", "points");
   c->field_cells = number_at(o, field, "cells");
@@ -391,18 +393,26 @@ done:
   return st;
 }
 
+static int remove_entry(const char *path, const struct stat *at, int type,
+                        struct FTW *walk)
+{
+  (void)at;
+  (void)type;
+  (void)walk;
+  return remove(path);
+}
+
 /* Results of an earlier solver that failed must not count as new ones. */
 static void remove_results(const struct vg_adapt_cycle *c)
 {
-  const char *const other[] = { "outputs.csv", wall_names[0], wall_names[1] };
+  const char *name[N_SOLUTION + N_WALL + 1] = { "outputs.csv" };
   char *path;
 
-  for (int i = 0; i < N_SOLUTION + 3; i++) {
-    const char *name = i < N_SOLUTION ? solution_names[i]
-                                      : other[i - N_SOLUTION];
-
-    if (vg_adapt_path(c->dir, name, &path, NULL) < 0) continue;
-    unlink(path);
+  memcpy(name + 1, solution_names, sizeof solution_names);
+  memcpy(name + 1 + N_SOLUTION, wall_names, sizeof wall_names);
+  for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+    if (vg_adapt_path(c->dir, name[i], &path, NULL) < 0) continue;
+    nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     free(path);
   }
 }
@@ -458,11 +468,13 @@ static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                  ".sol in %s",
                  c->number, c->dir);
   else if (!*a->o->row.field && !wall_of(c))
-    st = vg_fail(err, VG_ERR_INPUT,
-                 "cycle %d: nothing to adapt to: give the fields that the "
-                 "metric resolves by --field or in the table adapt of the "
-                 "deck, or a solver that leaves wall.vtu or wall.vtp in %s",
-                 c->number, c->dir);
+    st = vg_fail(
+      err, VG_ERR_INPUT,
+      "cycle %d: nothing to adapt to: give the fields that the "
+      "metric resolves by --field or in the table adapt of the "
+      "deck, or a solver that leaves the skin friction in the folder wall, "
+      "wall.vtu or wall.vtp of %s",
+      c->number, c->dir);
   else st = read_outputs(c, err);
 done:
   vg_words_release(&w);
