@@ -35,11 +35,16 @@ find_openfoam() {
     die "foamToVTK is not found: load OpenFOAM's etc/bashrc first"
 }
 
-# Run a command of OpenFOAM in the case, with its output in log.NAME.
+# Run a command of OpenFOAM in the case, with its output in log.NAME. In the
+# background, so that a signal ends it and this script at once.
+child=
+trap '[ -z "$child" ] || kill "$child" 2>/dev/null; exit 143' TERM INT
 step() {
   local name=$1
   shift
-  "$@" >"$case/log.$name" 2>&1 || {
+  "$@" >"$case/log.$name" 2>&1 &
+  child=$!
+  wait "$child" || {
     local status=$?
     tail -n 30 "$case/log.$name" >&2
     die "$name ended with status $status; its log is $case/log.$name"

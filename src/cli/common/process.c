@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,10 +88,13 @@ vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
   return st;
 }
 
-/* Execute the command in the child process; never returns. */
+/* Execute the command in the child process, in a process group of its own;
+ * never returns. */
 static void become(char **word, const char *dir, const int to[2],
                    const sigset_t *mask)
 {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
   sigprocmask(SIG_SETMASK, mask, NULL);
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
@@ -105,8 +109,8 @@ static void become(char **word, const char *dir, const int to[2],
   _exit(127);
 }
 
-/* Wait until the child ends. A SIGTERM is forwarded to the child, which does
- * not receive it otherwise (Ctrl-C reaches it directly). */
+/* Wait until the child ends. A request to stop is forwarded to its whole group:
+ * a script may be waiting for a program of its own. */
 static int wait_for(pid_t child, const sigset_t *chld)
 {
   const struct timespec pause = { 0, 200000000 };
@@ -117,7 +121,7 @@ static int wait_for(pid_t child, const sigset_t *chld)
 
     if (got == child) break;
     if (got < 0 && errno != EINTR) return 127;
-    if (vg_display_interrupted() && !signalled++) kill(child, SIGTERM);
+    if (vg_display_interrupted() && !signalled++) kill(-child, SIGTERM);
     sigtimedwait(chld, NULL, &pause);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -151,6 +155,7 @@ vg_status vg_words_run(const struct vg_words *w, const char *dir,
   fflush(NULL);
   child = fork();
   if (child == 0) become(w->word, dir, to, &before);
+  if (child > 0) setpgid(child, child); /* whichever of both is first */
   if (child > 0) *status = wait_for(child, &chld);
   sigprocmask(SIG_SETMASK, &before, NULL);
   *wall = vg_display_now() - start;

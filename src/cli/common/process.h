@@ -36,7 +36,9 @@ vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
                             int threads, struct vg_error *err);
 
 /** Run the command in a child process and wait until it ends. Its output goes
- * to the file `log`, which is replaced. A SIGTERM is forwarded to it.
+ * to the file `log`, which is replaced. A request to stop this process is
+ * forwarded to the child and its own children as SIGTERM; the child also gets
+ * one if this process is killed.
  *
  * @param dir     its working directory; NULL: that of this process
  * @param out     file for its standard output; NULL: the log

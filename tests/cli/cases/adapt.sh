@@ -68,32 +68,37 @@ exits 1
 says err "cycle 1: the solver ended with status 3: the flow diverges"
 rm fail
 for i in 1 2 3; do
-  setsid "$program" adapt box.deck -o b --cycles 3 -q >/dev/null 2>&1 &
+  "$program" adapt box.deck -o b --cycles 3 -q >/dev/null 2>&1 &
   loop=$!
   sleep 0.$((i * 3))
-  kill -9 -- "-$loop" 2>/dev/null
+  kill -9 "$loop" 2>/dev/null
   wait "$loop" 2>/dev/null
+  sleep 1 # its mesher ends
 done
 vanguard adapt box.deck -o b --cycles 3 -q
 exits 0
 for i in 1 2 3; do same "a/cycle-$i/box.b8.ugrid" "b/cycle-$i/box.b8.ugrid"; done
 
-# A signal ends the step that is running.
+# A signal ends the step that is running, with the programs of its script.
 cat >slow.sh <<'END'
 #!/bin/bash
-touch is-running
-sleep 60
+sh -c 'echo $$ >is-running; exec sleep 60'
 END
 chmod +x slow.sh
 "$program" adapt -p box.lb8.ugrid -o s --field q --solver ./slow.sh -q \
   >out 2>err &
 loop=$!
-for _ in $(seq 200); do [ ! -e is-running ] || break; sleep 0.1; done
+for _ in $(seq 200); do [ ! -s is-running ] || break; sleep 0.1; done
 kill -TERM "$loop"
 wait "$loop"
 status=$?
 exits 1
 says err "interrupted in cycle 1; the same command continues"
+for _ in $(seq 50); do
+  kill -0 "$(cat is-running)" 2>/dev/null || break
+  sleep 0.1
+done
+! kill -0 "$(cat is-running)" 2>/dev/null || fail "the solver still runs"
 
 # A mesh that fails because of the geometry is tried with other metrics, and the
 # record says so; no other failure selects another metric.
