@@ -10,7 +10,7 @@
 #include "core/sizing/sizing_map.h"
 #include "core/sizing/sizing_mesh.h"
 #include "run/input/input.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/plan/run_plan.h"
 #include "run/stages/file_mesh.h"
 #include "run/stages/report_run.h"

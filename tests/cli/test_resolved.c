@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "core/flow/flow.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/settings/plan_options.h"
 
 #define TEXT (2 * VG_LIST_MAX + 4)

@@ -31,6 +31,8 @@ static const struct {
   { "sources", " bn alpha group " },
   { "sweep", " ranks threads bisections leaf_cells decompose subdomains family "
              "repeat " },
+  { "adapt", " solver field norm cycles cells cells_ratio growth h_min h_max "
+             "aspect_max " },
 };
 
 static int is_listed(const char *table, const char *row)

@@ -7,7 +7,7 @@
 #include "core/mesh/edges.h"
 #include "io/mesh/vtu.h"
 #include "layers/columns/growth_law.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/input/wall_shear.h"
 
 #define RATIO 1.2 /* L32 */

@@ -9,7 +9,7 @@
 #include "io/mesh/format.h"
 #include "io/mesh/vtu.h"
 #include "run/common/text.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
 

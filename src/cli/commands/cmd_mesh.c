@@ -18,7 +18,7 @@
 #include "run/common/log.h"
 #include "run/common/ranges.h"
 #include "run/common/text.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/report/report.h"
 #include "run/stages/output.h"
 #include "run/stages/report_run.h"

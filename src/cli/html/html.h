@@ -7,7 +7,7 @@
 
 #include "run/common/json_build.h"
 #include "run/input/input.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/stages/run.h"
 
 /** Contents of a page; borrowed. */

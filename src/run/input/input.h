@@ -194,7 +194,7 @@ struct vg_boundary {
  *   vg_problem_read      1. read
  *   vg_boundary_shape    2. the surface, from `read`
  *   vg_boundary_close    3. the domain around it
- *   vg_layer_stage_plan  4. the requested layers (run/input/layers.h)
+ *   vg_layer_stage_plan  4. the requested layers (run/layers/layers.h)
  *   vg_problem_settle    swaps slivers; resolved settings */
 struct vg_problem {
   struct vg_settings asked; /* Not modified after parsing. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/plan/run_plan.h: forecast of a complete run (cells, points, memory of a
  * rank, time) from the surface and the sizing field only. Uses
- * run/input/layers.h, partition/model/rates.h.
+ * run/layers/layers.h, partition/model/rates.h.
  *
  *   vg_plan_begin    notes the time before the project is read
  *   (the caller)     vg_problem_read or vg_problem_given
@@ -17,7 +17,7 @@
 #include "partition/model/phase.h"
 #include "partition/model/rates.h"
 #include "run/common/ranges.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/input/source_effect.h"
 
 enum { VG_PLAN_LEAVES = 8 };

@@ -18,7 +18,7 @@
 #include "core/surface/surface_check.h"
 #include "partition/solver/solver.h"
 #include "run/common/json_build.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 
 #define VG_SHOWN_DEFECTS 3   /* defects of a kind listed in the text */
 #define VG_LISTED_DEFECTS 20 /* defects of a kind listed in the JSON */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "run/common/text.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/report/report.h"
 #include "run/report/report_parts.h"
 

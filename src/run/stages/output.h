@@ -9,7 +9,7 @@
 #include "core/mesh/slices.h"
 #include "run/commit/commit.h"
 #include "run/input/input.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/settings/lists.h"
 
 struct vg_slices_ugrid;

@@ -19,7 +19,7 @@
 #include "partition/solver/solver.h"
 #include "run/common/json_build.h"
 #include "run/input/input.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/input/source_effect.h"
 #include "run/section/section_mesh.h"
 #include "run/stages/agree.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 
 #include <assert.h>
 #include <math.h>

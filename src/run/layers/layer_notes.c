@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Notes about the layers that are planned. Declared in run/input/layers.h. */
+/* Notes about the layers that are planned. Declared in run/layers/layers.h. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 #include "layers/columns/growth_law.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 
 #define SHOWN_PATCHES 20
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 
 /* NAN compares false: no limit. A patch without layers misses every limit. */
 static int is_missed(const struct vg_limit_missed *m)

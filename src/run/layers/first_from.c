@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* First heights from the wall shear of a solution. Declared in
- * run/input/layers.h.
+ * run/layers/layers.h.
  *
  * y_plus gives one first height for each patch, by the skin friction of a flat
  * plate. Where a solution has the skin friction coefficient c_f, the height h
@@ -21,7 +21,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 #include "run/input/wall_shear.h"
 #include "run/settings/resolved.h"
 

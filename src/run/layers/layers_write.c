@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "io/mesh/vtu.h"
-#include "run/input/layers.h"
+#include "run/layers/layers.h"
 
 /* Triangles of the walls. */
 struct wall_tris {

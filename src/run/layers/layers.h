@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* run/input/layers.h: the layer stage of vanguard mesh, from settings to the
+/* run/layers/layers.h: the layer stage of vanguard mesh, from settings to the
  * requested layers of each patch, growth, measurement and limits. Uses layers,
  * run/input/walls.h. */
-#ifndef VG_RUN_INPUT_LAYERS_H
-#define VG_RUN_INPUT_LAYERS_H
+#ifndef VG_RUN_LAYERS_LAYERS_H
+#define VG_RUN_LAYERS_LAYERS_H
 
 #include "layers/columns/layers.h"
 #include "layers/expand/join.h"
@@ -44,7 +44,7 @@ struct vg_y_plus_patch {
 };
 
 struct vg_layer_laws; /* Growth laws by source, private to
-                         run/input/layers.c. */
+                         run/layers/layers.c. */
 
 struct vg_layer_stage {
   int is_on; /* 1: layers are grown. */
@@ -105,7 +105,7 @@ void vg_note_first_heights(const struct vg_layer_stage *s,
 
 /** Computes first heights and skin friction at the points of the walls of s
  * from the walls of the solution, b->read->shear. s: planned, with the requests
- * of y_plus. run/input/first_from.c.
+ * of y_plus. run/layers/first_from.c.
  *
  * @param out  empty; all points of walls. Owned by the caller, also on failure
  *
@@ -162,7 +162,7 @@ vg_status vg_layer_stage_relaxed(struct vg_layer_stage *s,
                                  struct vg_error *err);
 
 /** Steps that also need the field, once s->top is known: statistics of the
- * tops, and limits. run/input/layer_limits.c. */
+ * tops, and limits. run/layers/layer_limits.c. */
 vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
                                 const struct vg_mesh *surface,
                                 struct vg_error *err);
