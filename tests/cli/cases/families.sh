@@ -52,3 +52,50 @@ sed 's/ *5000000 / 0 /; s/0\.7 *$/0/; s/^\(4 *\)1 /\10 /' w/wing-sharp.deck >w/n
 vanguard sweep -q -p w/wing-sharp --deck w/n.deck --out no --family dpw:1
 exits 1
 says err "need reynolds and reference_length"
+
+# Edges across a blunt trailing edge at the levels of hlpw: 4, 6, 9, 12, 18 and
+# 27, counted at both ends of a section with one.
+{
+  for y in 0 0.04; do
+    echo "v 0 $y 0"; echo "v 0.1 $y 0.03"; echo "v 0.3 $y 0.005"
+    echo "v 0.3 $y -0.005"; echo "v 0.1 $y -0.03"
+  done
+  echo "g sides"
+  for k in 1 2 4 5; do
+    n=$((k % 5 + 1))
+    echo "f $k $((k + 5)) $((n + 5))"; echo "f $k $((n + 5)) $n"
+  done
+  echo "g ends"
+  for k in 2 3 4; do
+    echo "f 1 $k $((k + 1))"; echo "f 6 $((k + 6)) $((k + 5))"
+  done
+  echo "g base"; echo "f 3 8 9"; echo "f 3 9 4"
+} >wedge.obj
+cat >wedge.deck <<'DECK'
+Edges across a base
+remesh_surface  surface_size
+yes             0.05
+
+surface
+patch  across
+base   4
+DECK
+for level in 1:4 2/3:6 4/9:9 1/3:12 2/9:18 4/27:27; do
+  scale=$(awk "BEGIN { printf \"%.17g\", ${level%:*} }")
+  rm -rf edge
+  vanguard surface -q wedge.obj --deck wedge.deck --scale "$scale" --out edge \
+    --farfield none --write lb8.ugrid
+  exits 0
+  python3 - edge/wedge.lb8.ugrid "${level#*:}" <<'PY' || fail "level $level"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+ends = [0, 0]
+for i in range(struct.unpack_from("<i", data)[0]):
+    x, y, z = struct.unpack_from("<3d", data, 28 + 24 * i)
+    if abs(x - 0.3) < 1e-9 and min(y, 0.04 - y) < 1e-9:
+        ends[y > 0.02] += 1
+n = int(sys.argv[2])
+for end in ends:
+    assert abs(end - 1 - n) <= max(1, n // 8), (end - 1, n)
+PY
+done
