@@ -13,7 +13,7 @@ says out "* planned, not meshed"
 [ -s fam/hlpwC-n1-t1/plan.json ] || fail "no forecast of level C"
 grep -q "Grid metrics" fam/metrics.html || fail "no page"
 python3 - fam/metrics.csv <<'PY' || fail "metrics.csv"
-import csv, sys
+import csv, math, sys
 a, b, c = csv.DictReader(open(sys.argv[1]))
 assert [r["level"] for r in (a, b, c)] == ["hlpwA", "hlpwB", "hlpwC"]
 assert [r["state"] for r in (a, b, c)] == ["meshed", "meshed", "planned"]
@@ -24,7 +24,12 @@ for row, y, g in ((a, 2.25, 1.25), (b, 1.5, 1.16)):
     kinds = ("tetrahedra", "pyramids", "prisms", "hexahedra")
     assert sum(float(row[k]) for k in kinds) == float(row["cells"])
     assert float(row["percent_full_layers"]) > 99
-assert float(b["cells_ratio_requested"]) == 3.375
+share = float(a["layer_cells"]) / float(a["cells"])
+more = math.log(1.25) / math.log(1.16)
+ratio = 2.25 * (share * more + (1 - share) * 1.5)
+assert 0.5 < share < 1
+assert a["lead"] == a["trail"] == "" # the deck requests no spacing
+assert abs(float(b["cells_ratio_requested"]) - ratio) < 1e-6 * ratio
 assert float(b["cells"]) > float(a["cells"])
 assert float(c["cells"]) > float(b["cells"]) and c["boundary_nodes"] == ""
 assert float(c["y_plus_requested"]) == 1
@@ -99,3 +104,22 @@ for end in ends:
     assert abs(end - 1 - n) <= max(1, n // 8), (end - 1, n)
 PY
 done
+
+# Edge lengths at leading and trailing edges, requested and reached.
+cat >spacing.deck <<'DECK'
+Leading and trailing edges
+remesh_surface  surface_size
+yes             0.05
+
+surface
+patch  lead  trail
+sides  0.02  0.01
+DECK
+sed 's/ 0\.04 / 0.4 /' wedge.obj >long.obj
+vanguard surface -q long.obj --deck spacing.deck --flow external --out spaced
+exits 0
+says out "edge length at leading edges, % of the local chord: requested 2, reached"
+jq -e '.remesh | .leading_edges, .trailing_edges |
+  .reached_percent / .requested_percent | . > 0.8 and . < 1.15' \
+  spaced/long.surface.json >ratios || fail "spacing: $(cat ratios)"
+! grep -q false ratios || fail "spacing: $(cat ratios)"
