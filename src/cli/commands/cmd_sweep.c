@@ -179,6 +179,7 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   o->scale = p.asked.scale;
   o->reynolds = p.asked.layer.reynolds;
   o->length = p.asked.layer.length;
+  o->layer_count = p.asked.layer.count;
   o->sets_farfield = p.asked.farfield.kind != VG_DOMAIN_NONE &&
                      p.asked.farfield.kind != VG_DOMAIN_MACH;
   if (st >= 0 && p.asked.n_sweep) st = take_row(deck, &p.asked.sweep, o, err);

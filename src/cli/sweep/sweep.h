@@ -39,8 +39,9 @@ struct vg_sweep_options {
   const char *levels_planned;   /* as given; NULL: none */
   struct vg_range_list planned; /* levels that are planned, not meshed */
   double reynolds, length;      /* of the deck, for a workshop's family */
-  int sets_farfield;            /* 1: the deck does not exclude a farfield made
-                                   by the program */
+  int64_t layer_count; /* of the deck; 0: up to the local edge length */
+  int sets_farfield;   /* 1: the deck does not exclude a farfield made
+                          by the program */
   int repeat, keep, json, quiet;
   int n_extra;
   char **extra; /* [n_extra] for vanguard mesh */
@@ -72,7 +73,12 @@ enum vg_sweep_figure {
   VG_FIGURE_Y_PLUS,
   VG_FIGURE_GROWTH,
   VG_FIGURE_FULL,
-  VG_FIGURE_FARFIELD, /* half of the domain's extent, in reference lengths */
+  VG_FIGURE_FARFIELD,   /* half of the domain's extent, in reference lengths */
+  VG_FIGURE_LEAD_ASKED, /* edge lengths at leading and trailing edges, % of the
+                           local chord, requested by the deck and reached */
+  VG_FIGURE_LEAD,
+  VG_FIGURE_TRAIL_ASKED,
+  VG_FIGURE_TRAIL,
   VG_FIGURE_N
 };
 

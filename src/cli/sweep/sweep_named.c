@@ -26,6 +26,8 @@ static const struct named {
   const char *name;
   char first; /* name of the first level */
   struct level level[LEVELS];
+  double edge[LEVELS]; /* spacing at leading and trailing edges, % of the local
+                          chord; 0: that of the deck */
 } named[VG_FAMILY_N] = { [VG_FAMILY_DPW] = { "dpw",
                                              '1',
                                              { { 1, 1, 1.16 },
@@ -33,15 +35,18 @@ static const struct named {
                                                { 0.5, 0.5, 1.068 },
                                                { 0.4, 0.4, 1.045 },
                                                { 1. / 3, 1. / 3, 1.03 },
-                                               { 2. / 7, 2. / 7, 1.02 } } },
-                         [VG_FAMILY_HLPW] = { "hlpw",
-                                              'A',
-                                              { { 1, 2.25, 1.25 },
-                                                { 2. / 3, 1.5, 1.16 },
-                                                { 4. / 9, 1, 1.10 },
-                                                { 1. / 3, 0.75, 1.07 },
-                                                { 2. / 9, 0.5, 1.05 },
-                                                { 4. / 27, 1. / 3, 1.03 } } } };
+                                               { 2. / 7, 2. / 7, 1.02 } },
+                                             { 0 } },
+                         [VG_FAMILY_HLPW] = {
+                           "hlpw",
+                           'A',
+                           { { 1, 2.25, 1.25 },
+                             { 2. / 3, 1.5, 1.16 },
+                             { 4. / 9, 1, 1.10 },
+                             { 1. / 3, 0.75, 1.07 },
+                             { 2. / 9, 0.5, 1.05 },
+                             { 4. / 27, 1. / 3, 1.03 } },
+                           { 0.225, 0.15, 0.1, 0.075, 0.05, 0.033 } } };
 
 /* --- levels -------------------------------------------------------------- */
 
@@ -191,16 +196,25 @@ done:
 
 /* --- figures ------------------------------------------------------------- */
 
-static const char *const figure_names[VG_FIGURE_N] = {
-  "nodes",          "cells",
-  "tetrahedra",     "pyramids",
-  "prisms",         "hexahedra",
-  "boundary_nodes", "boundary_triangles",
-  "boundary_quads", "layer_cells",
-  "first_height",   "y_plus",
-  "growth_max",     "percent_full_layers",
-  "farfield_chords"
-};
+static const char *const figure_names[VG_FIGURE_N] = { "nodes",
+                                                       "cells",
+                                                       "tetrahedra",
+                                                       "pyramids",
+                                                       "prisms",
+                                                       "hexahedra",
+                                                       "boundary_nodes",
+                                                       "boundary_triangles",
+                                                       "boundary_quads",
+                                                       "layer_cells",
+                                                       "first_height",
+                                                       "y_plus",
+                                                       "growth_max",
+                                                       "percent_full_layers",
+                                                       "farfield_chords",
+                                                       "lead_requested",
+                                                       "lead",
+                                                       "trail_requested",
+                                                       "trail" };
 
 static double number(const json_t *o, const char *a, const char *b,
                      const char *c)
@@ -254,6 +268,14 @@ void vg_sweep_figures(const json_t *report, const struct vg_sweep_options *o,
   f[VG_FIGURE_GROWTH] = number(layers, "all", "growth", "max");
   f[VG_FIGURE_FULL] = number(layers, "all", "percent_full", NULL);
   f[VG_FIGURE_FARFIELD] = farfield(report, o->length);
+  for (int k = 0; k < 2; k++) {
+    const char *edge = k ? "trailing_edges" : "leading_edges";
+
+    f[VG_FIGURE_LEAD_ASKED + 2 * k] = number(report, "remesh", edge,
+                                             "requested_percent");
+    f[VG_FIGURE_LEAD + 2 * k] = number(report, "remesh", edge,
+                                       "reached_percent");
+  }
 }
 
 void vg_sweep_estimates(const json_t *plan, struct vg_sweep_case *c)
@@ -271,34 +293,79 @@ void vg_sweep_estimates(const json_t *plan, struct vg_sweep_case *c)
 /* --- tables -------------------------------------------------------------- */
 
 /* Rows of the table of requested and reached figures. */
-enum { ROW_Y_PLUS, ROW_GROWTH, ROW_FARFIELD, ROW_FULL, ROW_RATIO, ROW_N };
+enum {
+  ROW_Y_PLUS,
+  ROW_GROWTH,
+  ROW_LEAD,
+  ROW_TRAIL,
+  ROW_FARFIELD,
+  ROW_FULL,
+  ROW_RATIO,
+  ROW_N
+};
 static const char *const row_names[ROW_N] = {
-  "y+ of the first layer", "growth ratio of the layers",
-  "farfield (reference lengths)", "full layers (% of wall faces)",
+  "y+ of the first layer",
+  "growth ratio of the layers",
+  "leading edges (% of the chord)",
+  "trailing edges (% of the chord)",
+  "farfield (reference lengths)",
+  "full layers (% of wall faces)",
   "cells / those of the level before"
 };
+
+/* Ratio of the number of cells to that of the level before that the laws of
+ * both levels request. Cells outside the layers follow the cube of the edge
+ * lengths. Cells in the layers follow their square and the number of layers:
+ * first heights and edge lengths have the same ratio, so that the number of
+ * layers from one to the other is inversely proportional to the logarithm of
+ * the growth. */
+static double cells_ratio(const struct vg_sweep *s, size_t i)
+{
+  const struct vg_sweep_case *p = vg_sweep_before(s, i);
+  const struct level *to = level_of(s->o, s->item[i].family), *from;
+  double finer, more, share;
+
+  if (!p) return NAN;
+  from = level_of(s->o, p->family);
+  finer = from->scale / to->scale;
+  more = s->o->layer_count ? 1 : log(from->growth) / log(to->growth);
+  share = p->figure[VG_FIGURE_LAYER_CELLS] / p->figure[VG_FIGURE_CELLS];
+  if (!isfinite(share)) share = 0; /* no layers */
+  return finer * finer * (share * more + (1 - share) * finer);
+}
+
+/* Spacing that the workshop requests, or else the deck. */
+static double edge_spacing(const struct vg_sweep *s, size_t i, int asked)
+{
+  const double law = named[s->o->rule].edge[s->item[i].family - 1];
+
+  return law > 0 ? law : s->item[i].figure[asked];
+}
 
 static double requested(const struct vg_sweep *s, size_t i, int row)
 {
   const struct level *l = level_of(s->o, s->item[i].family);
-  const struct vg_sweep_case *p = vg_sweep_before(s, i);
-  double finer;
 
   switch (row) {
   case ROW_Y_PLUS: return l->y_plus;
   case ROW_GROWTH: return l->growth;
+  case ROW_LEAD: return edge_spacing(s, i, VG_FIGURE_LEAD_ASKED);
+  case ROW_TRAIL: return edge_spacing(s, i, VG_FIGURE_TRAIL_ASKED);
   case ROW_FARFIELD: return VG_FAMILY_FARFIELD;
   case ROW_FULL: return 100;
-  default:
-    finer = p ? level_of(s->o, p->family)->scale / l->scale : NAN;
-    return finer * finer * finer;
+  default: return cells_ratio(s, i);
   }
 }
 
 static double reached(const struct vg_sweep *s, size_t i, int row)
 {
-  static const int figure[ROW_N] = { VG_FIGURE_Y_PLUS, VG_FIGURE_GROWTH,
-                                     VG_FIGURE_FARFIELD, VG_FIGURE_FULL, -1 };
+  static const int figure[ROW_N] = { VG_FIGURE_Y_PLUS,
+                                     VG_FIGURE_GROWTH,
+                                     VG_FIGURE_LEAD,
+                                     VG_FIGURE_TRAIL,
+                                     VG_FIGURE_FARFIELD,
+                                     VG_FIGURE_FULL,
+                                     -1 };
   const struct vg_sweep_case *c = &s->item[i], *p = vg_sweep_before(s, i);
 
   if (figure[row] >= 0) return c->figure[figure[row]];

@@ -64,6 +64,13 @@ struct vg_put_back {
   double seconds;
 };
 
+/* Edge lengths at leading or at trailing edges in local chords, means over the
+ * triangles there. n 0: none were requested by the table `surface`. */
+struct vg_edge_spacing {
+  double asked, reached;
+  size_t n; /* triangles */
+};
+
 /** Result of remeshing the surface. */
 struct vg_remeshing {
   int is_done;
@@ -79,6 +86,7 @@ struct vg_remeshing {
                                        and after. */
   double seconds;
   struct vg_put_back back;
+  struct vg_edge_spacing spacing[2]; /* at leading, at trailing edges */
   double volume[2]; /* Volume enclosed by the remeshed surface, and by the CAD
                        model as Open CASCADE integrates it; NAN if one of them
                        is not closed. */

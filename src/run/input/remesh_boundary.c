@@ -419,6 +419,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   if (b->model.cad) VG_TRY(vg_boundary_put_back(b, show, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
+  VG_TRY(vg_surface_spacing_measure(b, r->spacing, err));
   note_faults(b);
   note_remeshing(b);
   note_areas(b);

@@ -111,6 +111,15 @@ vg_status vg_surface_sizes_make(const struct vg_boundary *b,
 
 void vg_surface_sizes_release(struct vg_surface_sizes *s);
 
+/** Measures the edge lengths of the remeshed surface at the leading (to[0]) and
+ * trailing (to[1]) edges of the table `surface`: of the equilateral triangles
+ * that have the area of the triangles at leading edges, or the height of those
+ * at trailing edges. Bases of blunt trailing edges do not count. to: all 0.
+ * O(n) for each row. VG_ERR_MEMORY. */
+vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
+                                     struct vg_edge_spacing to[2],
+                                     struct vg_error *err);
+
 /** Adds a note if `auto` remeshes because of slivers, and a warning if slivers
  * remain. */
 void vg_boundary_note_slivers(struct vg_boundary *b);

@@ -310,6 +310,138 @@ done:
   return st;
 }
 
+/* --- spacing reached ------------------------------------------------------ */
+
+/* Edge over height of an equilateral triangle. */
+#define EDGE_OVER_HEIGHT 1.1547005383792515
+
+static void add_spacing(struct vg_edge_spacing *s, double asked, double reached)
+{
+  s->asked += asked;
+  s->reached += reached;
+  s->n++;
+}
+
+/* Twice the area of a triangle, with its direction. */
+static void area_of(const struct vg_mesh *m, size_t t, double area[3])
+{
+  double u[3], v[3];
+
+  vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
+  vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
+  vg_cross(u, v, area);
+}
+
+/* Triangles with a point within half the requested edge length behind the
+ * leading edge. */
+static void measure_lead(const struct vg_mesh *m, size_t patch, double share,
+                         struct vg_edge_spacing *to)
+{
+  struct sections s;
+
+  cut(&s, m, patch);
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && m->tri_patch[t] == patch; k++) {
+      double chord, behind, area[3];
+
+      if (!chord_at(&s, m->point[m->tri[t][k]], &chord, &behind) ||
+          behind > 0.5 * share * chord)
+        continue;
+      area_of(m, t, area);
+      add_spacing(to, share, sqrt(EDGE_OVER_HEIGHT * vg_norm(area)) / chord);
+      break;
+    }
+}
+
+/* Triangles on edges whose ends are on trailing edges, except those that face
+ * along the stream. chord: [n_point] 0: not on a trailing edge. */
+static void measure_trail(const struct vg_mesh *m, const uint8_t (*on)[2],
+                          double share, const double *chord,
+                          struct vg_edge_spacing *to)
+{
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && on[m->tri_patch[t]][0]; k++) {
+      const uint32_t p = m->tri[t][k], q = m->tri[t][(k + 1) % 3];
+      double area[3], norm;
+
+      if (!(chord[p] > 0 && chord[q] > 0) || chord[m->tri[t][(k + 2) % 3]] > 0)
+        continue;
+      area_of(m, t, area);
+      norm = vg_norm(area);
+      if (2 * area[0] * area[0] > norm * norm) continue;
+      add_spacing(to, share,
+                  EDGE_OVER_HEIGHT * norm /
+                    vg_distance(m->point[p], m->point[q]) /
+                    (0.5 * (chord[p] + chord[q])));
+    }
+}
+
+static vg_status measure_rows(const struct vg_boundary *b, uint8_t *mark,
+                              uint8_t (*on)[2], const double *chord,
+                              struct vg_edge_spacing to[2],
+                              struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_mesh *m = &b->surface;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < s->n_surface; i++) {
+    const struct vg_surface_row *row = &s->surface_row[i];
+
+    if (!(row->lead > 0 || row->trail > 0)) continue;
+    memset(mark, 0, m->n_patch);
+    VG_TRY(vg_patch_ref_mark("surface", row->patch, row->patch_name, m,
+                             m->n_patch, mark, err));
+    for (size_t k = 0; k < m->n_patch; k++) {
+      on[k][0] = mark[k];
+      if (mark[k] && row->lead > 0)
+        measure_lead(m, k, row->lead * s->scale, &to[0]);
+    }
+    if (row->trail > 0)
+      measure_trail(m, (const uint8_t(*)[2])on, row->trail * s->scale, chord,
+                    &to[1]);
+  }
+done:
+  return st;
+}
+
+vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
+                                     struct vg_edge_spacing to[2],
+                                     struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_mesh *m = &b->surface;
+  struct vg_trailing t = VG_TRAILING_INIT;
+  int lead = 0, trail = 0;
+  double *chord;
+  uint8_t *mark;
+  vg_status st;
+
+  for (size_t i = 0; i < s->n_surface; i++) {
+    lead |= s->surface_row[i].lead > 0;
+    trail |= s->surface_row[i].trail > 0;
+  }
+  if (!lead && !trail) return VG_OK;
+  chord = vg_calloc(m->n_point, sizeof *chord);
+  mark = vg_calloc(3 * m->n_patch, 1);
+  if (!chord || !mark) VG_TRY(vg_fail_memory(err, "the edges of the surface"));
+  if (trail) VG_TRY(find_trailing(b, &t, err));
+  for (size_t i = 0; i < t.n; i++)
+    for (int k = 0; k < 2; k++) chord[t.edge[i].point[k]] = t.edge[i].chord;
+  VG_TRY(
+    measure_rows(b, mark, (uint8_t(*)[2])(mark + m->n_patch), chord, to, err));
+  for (int k = 0; k < 2; k++) {
+    if (!to[k].n) continue;
+    to[k].asked /= (double)to[k].n;
+    to[k].reached /= (double)to[k].n;
+  }
+done:
+  vg_trailing_release(&t);
+  free(chord);
+  free(mark);
+  return st;
+}
+
 void vg_surface_sizes_release(struct vg_surface_sizes *s)
 {
   free(s->cap);

@@ -59,6 +59,18 @@ static void back_text(FILE *to, const struct vg_put_back *b)
   distance_text(to, "distance of points from CAD after projection", &b->off[1]);
 }
 
+static void spacing_text(FILE *to, const struct vg_edge_spacing spacing[2])
+{
+  static const char *const edge[] = { "leading", "trailing" };
+
+  for (int k = 0; k < 2; k++)
+    if (spacing[k].n)
+      fprintf(to,
+              "  edge length at %s edges, %% of the local chord: requested "
+              "%.4g, reached %.4g\n",
+              edge[k], 100 * spacing[k].asked, 100 * spacing[k].reached);
+}
+
 static void stretch_text(FILE *to, const struct vg_remesh_report *r)
 {
   const size_t *n = r->n_aspect;
@@ -121,6 +133,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
             "  remeshed %d times, with the target edge length halved where "
             "triangles intersected\n",
             r->n_round);
+  spacing_text(to, n->spacing);
   stretch_text(to, r);
   bad_text(to, r);
 }
@@ -199,6 +212,14 @@ static json_t *stretch_json(const struct vg_remesh_report *r)
                    (json_int_t)n[4]);
 }
 
+static json_t *spacing_json(const struct vg_edge_spacing *s)
+{
+  if (!s->n) return json_null();
+  return json_pack("{s:f s:f s:I}", "requested_percent", 100 * s->asked,
+                   "reached_percent", 100 * s->reached, "triangles",
+                   (json_int_t)s->n);
+}
+
 json_t *vg_report_remesh_json(const struct vg_remeshing *n,
                               const struct vg_mesh *m)
 {
@@ -207,7 +228,8 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
   if (!n->is_done) return json_null();
   return json_pack(
     "{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-    "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
+    "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o "
+    "s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1], "points",
     (json_int_t)r->n_point[0], (json_int_t)r->n_point[1], "corners",
     (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line, "line_length",
@@ -221,7 +243,9 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds, "patches", patches_json(n, m),
-    "below_20_degrees", bad_json(r, SIZE_MAX), "stretched", stretch_json(r));
+    "below_20_degrees", bad_json(r, SIZE_MAX), "stretched", stretch_json(r),
+    "leading_edges", spacing_json(&n->spacing[0]), "trailing_edges",
+    spacing_json(&n->spacing[1]));
 }
 
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)

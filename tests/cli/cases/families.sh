@@ -13,7 +13,7 @@ says out "* planned, not meshed"
 [ -s fam/hlpwC-n1-t1/plan.json ] || fail "no forecast of level C"
 grep -q "Grid metrics" fam/metrics.html || fail "no page"
 python3 - fam/metrics.csv <<'PY' || fail "metrics.csv"
-import csv, sys
+import csv, math, sys
 a, b, c = csv.DictReader(open(sys.argv[1]))
 assert [r["level"] for r in (a, b, c)] == ["hlpwA", "hlpwB", "hlpwC"]
 assert [r["state"] for r in (a, b, c)] == ["meshed", "meshed", "planned"]
@@ -24,7 +24,12 @@ for row, y, g in ((a, 2.25, 1.25), (b, 1.5, 1.16)):
     kinds = ("tetrahedra", "pyramids", "prisms", "hexahedra")
     assert sum(float(row[k]) for k in kinds) == float(row["cells"])
     assert float(row["percent_full_layers"]) > 99
-assert float(b["cells_ratio_requested"]) == 3.375
+share = float(a["layer_cells"]) / float(a["cells"])
+more = math.log(1.25) / math.log(1.16)
+ratio = 2.25 * (share * more + (1 - share) * 1.5)
+assert 0.5 < share < 1
+assert a["lead"] == a["trail"] == "" # the deck requests no spacing
+assert abs(float(b["cells_ratio_requested"]) - ratio) < 1e-6 * ratio
 assert float(b["cells"]) > float(a["cells"])
 assert float(c["cells"]) > float(b["cells"]) and c["boundary_nodes"] == ""
 assert float(c["y_plus_requested"]) == 1
@@ -52,3 +57,69 @@ sed 's/ *5000000 / 0 /; s/0\.7 *$/0/; s/^\(4 *\)1 /\10 /' w/wing-sharp.deck >w/n
 vanguard sweep -q -p w/wing-sharp --deck w/n.deck --out no --family dpw:1
 exits 1
 says err "need reynolds and reference_length"
+
+# Edges across a blunt trailing edge at the levels of hlpw: 4, 6, 9, 12, 18 and
+# 27, counted at both ends of a section with one.
+{
+  for y in 0 0.04; do
+    echo "v 0 $y 0"; echo "v 0.1 $y 0.03"; echo "v 0.3 $y 0.005"
+    echo "v 0.3 $y -0.005"; echo "v 0.1 $y -0.03"
+  done
+  echo "g sides"
+  for k in 1 2 4 5; do
+    n=$((k % 5 + 1))
+    echo "f $k $((k + 5)) $((n + 5))"; echo "f $k $((n + 5)) $n"
+  done
+  echo "g ends"
+  for k in 2 3 4; do
+    echo "f 1 $k $((k + 1))"; echo "f 6 $((k + 6)) $((k + 5))"
+  done
+  echo "g base"; echo "f 3 8 9"; echo "f 3 9 4"
+} >wedge.obj
+cat >wedge.deck <<'DECK'
+Edges across a base
+remesh_surface  surface_size
+yes             0.05
+
+surface
+patch  across
+base   4
+DECK
+for level in 1:4 2/3:6 4/9:9 1/3:12 2/9:18 4/27:27; do
+  scale=$(awk "BEGIN { printf \"%.17g\", ${level%:*} }")
+  rm -rf edge
+  vanguard surface -q wedge.obj --deck wedge.deck --scale "$scale" --out edge \
+    --farfield none --write lb8.ugrid
+  exits 0
+  python3 - edge/wedge.lb8.ugrid "${level#*:}" <<'PY' || fail "level $level"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+ends = [0, 0]
+for i in range(struct.unpack_from("<i", data)[0]):
+    x, y, z = struct.unpack_from("<3d", data, 28 + 24 * i)
+    if abs(x - 0.3) < 1e-9 and min(y, 0.04 - y) < 1e-9:
+        ends[y > 0.02] += 1
+n = int(sys.argv[2])
+for end in ends:
+    assert abs(end - 1 - n) <= max(1, n // 8), (end - 1, n)
+PY
+done
+
+# Edge lengths at leading and trailing edges, requested and reached.
+cat >spacing.deck <<'DECK'
+Leading and trailing edges
+remesh_surface  surface_size
+yes             0.05
+
+surface
+patch  lead  trail
+sides  0.02  0.01
+DECK
+sed 's/ 0\.04 / 0.4 /' wedge.obj >long.obj
+vanguard surface -q long.obj --deck spacing.deck --flow external --out spaced
+exits 0
+says out "edge length at leading edges, % of the local chord: requested 2, reached"
+jq -e '.remesh | .leading_edges, .trailing_edges |
+  .reached_percent / .requested_percent | . > 0.8 and . < 1.15' \
+  spaced/long.surface.json >ratios || fail "spacing: $(cat ratios)"
+! grep -q false ratios || fail "spacing: $(cat ratios)"
