@@ -22,6 +22,10 @@
 #include "core/sides/zone_cells.h"
 #include "io/stream/convention.h"
 
+/* Planes of the cube, whose coordinates are rounded. */
+#define FIRST 0.34
+#define STEP 0.08
+
 enum { N = 4, POINTS = (N + 1) * (N + 1) * (N + 1), TETS = 6 * N * N * N };
 
 static uint64_t seed;
@@ -73,9 +77,9 @@ static void fill_cube(struct vg_mesh *m)
       for (int i = 0; i <= N; i++) {
         double *x = m->point[m->n_point++];
 
-        x[0] = i;
-        x[1] = j;
-        x[2] = k;
+        x[0] = FIRST + STEP * i;
+        x[1] = FIRST + STEP * j;
+        x[2] = FIRST + STEP * k;
       }
   for (int k = 0; k < N; k++)
     for (int j = 0; j < N; j++)
@@ -274,8 +278,8 @@ static size_t compare(const struct scene *s, const struct vg_zone_map *map,
     uint32_t part = 0;
 
     assert_true(n > 0 && r[z].n_cell == n);
-    assert_float_equal(r[z].volume, map->volume[z], 1e-9);
-    assert_float_equal(r[z].volume, (double)n / 6, 1e-9);
+    assert_float_equal(r[z].volume, map->volume[z], 1e-12);
+    assert_float_equal(r[z].volume, (double)n / 6 * STEP * STEP * STEP, 1e-12);
     while (memcmp(s->cells.tet[part], m->tet[at], sizeof *m->tet)) part++;
     part = s->part[part];
     for (uint32_t c = 0; c < TETS; c++)
@@ -293,7 +297,7 @@ static size_t compare(const struct scene *s, const struct vg_zone_map *map,
 static void ask_places(const struct scene *s, const struct vg_zone_map *map,
                        const struct vg_mesh *m)
 {
-  const double out[3] = { -.5, 1, 1 }, far[3] = { 1.5, 2.25, 77 };
+  const double out[3] = { .3, .42, .42 }, far[3] = { .46, .52, 6.5 };
   uint64_t end = 0;
   size_t z = 0;
 

@@ -125,7 +125,7 @@ static vg_status ask_for_boom(const struct vg_mach_extent *e,
 }
 
 /* The roles of the sheets, and their names, which a .ugrid does not hold; the
- * rotating zone. */
+ * zone of an interface. */
 static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
                                 struct vg_error *err)
 {
@@ -148,6 +148,7 @@ static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
   vg_settings_row_default(VG_TABLE_ZONES, &zone);
   snprintf(zone.name, sizeof zone.name, "%s", d->zone.name);
   zone.kind = d->zone.kind;
+  if (zone.kind == VG_ZONE_SOLID) zone.mesh = VG_ANSWER_YES;
   memcpy(zone.seed, d->seed, sizeof zone.seed);
   return vg_settings_add(s, VG_TABLE_ZONES, &zone, err);
 }

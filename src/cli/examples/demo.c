@@ -39,6 +39,7 @@ static const struct vg_demo_case cases[] = {
   { "boom-half", "half model of boom, on a symmetry plane", 250000 },
   { "disk", "sphere behind an actuator disk, which is a sheet", 300000 },
   { "rotor", "impeller in a rotating zone of a box", 100000 },
+  { "fins", "solid with fins, a zone of a box", 100000 },
 };
 
 enum { N_ENTRY = sizeof cases / sizeof *cases };
@@ -61,6 +62,7 @@ static const struct entry {
   { BOOM, { 0, 1 }, NULL },
   { SPHERE, { 0, 0 }, vg_demo_add_disk },
   { BOX, { 0, 0 }, vg_demo_add_rotor },
+  { BOX, { 0, 0 }, vg_demo_add_fins },
 };
 
 const struct vg_demo_case *vg_demo_cases(size_t *n)

@@ -37,7 +37,8 @@ struct vg_demo {
   struct vg_mesh sheet;   /* triangles of inner surfaces, without points of the
                              surface: interfaces (is_interface), other sheets
                              (is_sheet), baffles; empty in most cases */
-  struct vg_zone zone;    /* rotating zone, if it has a name */
+  struct vg_zone zone;    /* the zone of the interface, if it has a
+                             name; a solid has cells */
   double seed[3];         /* a point in it */
   size_t n_body_tri;      /* the first triangles of the surface, which are the
                              body; 0: no body */
@@ -64,7 +65,8 @@ struct vg_demo {
  *                "boom-half" a body of revolution at Mach 1.6 in a domain
  *                along the Mach cone, with cells stretched along it;
  *                "disk" the sphere behind an actuator disk; "rotor" the box
- *                with an impeller in a rotating zone
+ *                with an impeller in a rotating zone; "fins" the box with a
+ *                solid with fins
  * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
  * @param out     owned by the caller, vg_demo_release; unchanged on failure

@@ -65,4 +65,9 @@ vg_status vg_demo_add_disk(const struct vg_demo_spacing *law, struct vg_demo *d,
 vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
                             struct vg_demo *d, struct vg_error *err);
 
+/** demo_sheets.c: a plate with three fins in the box, a solid whose surface is
+ * an interface. */
+vg_status vg_demo_add_fins(const struct vg_demo_spacing *law, struct vg_demo *d,
+                           struct vg_error *err);
+
 #endif

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Inner surfaces of the examples: an actuator disk; a rotor in its zone. */
+/* Inner surfaces of the examples: an actuator disk; a rotor in its zone; a
+ * solid with fins. */
+#include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -18,6 +22,13 @@
 #define BLADE_FROM 0.05
 #define BLADE_TO 0.22
 #define BLADE_CHORD 0.16
+
+/* The solid: a plate of 5 x 5 x 1 units with three fins of 5 x 1 x 3, from a
+ * corner. */
+#define FIN_UNIT 0.08
+#define FIN_X 0.3
+#define FIN_Z 0.34
+#define FIN_FACES 178 /* squares of its surface */
 
 static vg_status make_room(struct vg_mesh *m, size_t n_point, size_t n_tri,
                            struct vg_error *err)
@@ -217,5 +228,103 @@ vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
   d->zone.kind = VG_ZONE_ROTATING;
   memcpy(d->seed, centre, sizeof centre);
 done:
+  return st;
+}
+
+/* --- a solid with fins -------------------------------------------------------
+ */
+
+/* A lattice of n cubes per unit, with 5 x 5 x 4 units. */
+struct lattice {
+  int32_t n;
+  uint32_t *at; /* [(5 n + 1)^2 (4 n + 1)] numbers of its points in the mesh, or
+                   UINT32_MAX */
+  struct vg_mesh *m;
+};
+
+/* Whether a cube is in the solid; c[3]: its indices, of which one may be
+ * outside of the lattice. */
+static int in_solid(const struct lattice *l, const int32_t *c)
+{
+  for (int k = 0; k < 3; k++)
+    if (c[k] < 0 || c[k] >= (k < 2 ? 5 : 4) * l->n) return 0;
+  return c[2] < l->n || c[1] / l->n % 2 == 0;
+}
+
+static size_t lattice_point(struct lattice *l, const int32_t *c)
+{
+  const size_t row = 5 * (size_t)l->n + 1;
+  uint32_t
+    *at = &l->at[((size_t)c[2] * row + (size_t)c[1]) * row + (size_t)c[0]];
+
+  if (*at == UINT32_MAX) {
+    double *x = l->m->point[l->m->n_point];
+
+    for (int k = 0; k < 3; k++)
+      x[k] = (k < 2 ? FIN_X : FIN_Z) + FIN_UNIT * c[k] / l->n;
+    *at = (uint32_t)l->m->n_point++;
+  }
+  return *at;
+}
+
+/* Adds the square between a cube and its neighbour along an axis. */
+static void add_square(struct lattice *l, const int32_t *cube, int axis,
+                       int side)
+{
+  static const int corner[4][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } };
+  size_t v[4];
+
+  for (int i = 0; i < 4; i++) {
+    int32_t c[3] = { cube[0], cube[1], cube[2] };
+
+    c[axis] += side;
+    c[(axis + 1) % 3] += corner[side ? i : 3 - i][0];
+    c[(axis + 2) % 3] += corner[side ? i : 3 - i][1];
+    v[i] = lattice_point(l, c);
+  }
+  add_triangle(l->m, 0, v[0], v[1], v[2]);
+  add_triangle(l->m, 0, v[0], v[2], v[3]);
+}
+
+static void add_solid(struct lattice *l)
+{
+  int32_t c[3];
+
+  for (c[2] = 0; c[2] < 4 * l->n; c[2]++)
+    for (c[1] = 0; c[1] < 5 * l->n; c[1]++)
+      for (c[0] = 0; c[0] < 5 * l->n; c[0]++)
+        for (int k = 0; k < 6 && in_solid(l, c); k++) {
+          int32_t next[3] = { c[0], c[1], c[2] };
+
+          next[k / 2] += k % 2 ? 1 : -1;
+          if (!in_solid(l, next)) add_square(l, c, k / 2, k % 2);
+        }
+}
+
+vg_status vg_demo_add_fins(const struct vg_demo_spacing *law, struct vg_demo *d,
+                           struct vg_error *err)
+{
+  static const double seed[3] = { .5, .5, FIN_Z + .5 * FIN_UNIT };
+  const double per_unit = FIN_UNIT / vg_demo_size((void *)(uintptr_t)law, seed);
+  struct lattice l = { .m = &d->sheet };
+  size_t row, n_face;
+  vg_status st;
+
+  l.n = per_unit < 2 ? 2 : per_unit > 200 ? 200 : (int32_t)per_unit;
+  row = 5 * (size_t)l.n + 1;
+  n_face = FIN_FACES * (size_t)l.n * (size_t)l.n;
+  VG_TRY(make_room(l.m, n_face + 2, 2 * n_face, err));
+  VG_TRY(add_patch(d, "fins", err));
+  l.at = vg_alloc(row * row * (4 * (size_t)l.n + 1), sizeof *l.at);
+  if (!l.at) return vg_fail_memory(err, "the lattice of an example");
+  memset(l.at, 0xff, row * row * (4 * (size_t)l.n + 1) * sizeof *l.at);
+  add_solid(&l);
+  assert(l.m->n_tri == 2 * n_face && l.m->n_point == n_face + 2);
+  l.m->patch[0].is_sheet = l.m->patch[0].is_interface = 1;
+  snprintf(d->zone.name, VG_NAME_MAX, "fins");
+  d->zone.kind = VG_ZONE_SOLID;
+  memcpy(d->seed, seed, sizeof seed);
+done:
+  free(l.at);
   return st;
 }

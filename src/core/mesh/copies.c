@@ -23,10 +23,11 @@ static int is_side(const struct vg_patch *p, int32_t side, int32_t is_sheet)
 
 size_t vg_mesh_front_patch(const struct vg_mesh *m, size_t i)
 {
-  const int32_t is_sheet = i < m->n_patch && m->patch[i].is_sheet;
   size_t n = 0, front = 0;
+  int32_t is_sheet;
 
   assert(i < m->n_patch);
+  is_sheet = m->patch[i].is_sheet;
   if (m->patch[i].inner != VG_INNER_BACK) return i;
   for (size_t k = 0; k < i; k++)
     n += is_side(&m->patch[k], VG_INNER_BACK, is_sheet);

@@ -556,10 +556,12 @@ uint32_t vg_zone_map_at(const struct vg_zone_map *z, const double x[3])
 
     vg_line_place(c, i, s.to);
     vg_box_add(&box, x);
-    vg_box_add(&box, s.to);
+    /* s.to is not exactly in the plane of its triangle. */
+    for (int k = 0; k < 3; k++) vg_box_add(&box, c[k]);
     s.front = s.back = INFINITY;
     s.is_bad = 0;
     vg_box_tree_touched(&z->tree, &box, visit, &s);
+    assert(s.is_bad || fmin(s.front, s.back) <= 1);
     if (!s.is_bad) return s.front <= s.back ? s.zone : VG_ZONE_OUTSIDE;
   }
   return VG_ZONE_ON;

@@ -236,7 +236,7 @@ if command -v splitMeshRegions >/dev/null; then
   done
 else echo "OpenFOAM is not installed: its programs are omitted"; fi
 
-# The example.
+# The examples.
 vanguard demo rotor --cells 20000 --out demo
 exits 0
 vanguard mesh -p demo/rotor --quiet --write b8.ugrid
@@ -245,6 +245,15 @@ vanguard check demo/rotor.b8.ugrid
 exits 0
 says out "rotating"
 says out "blades_back"
+vanguard demo fins --cells 20000 --out demo
+exits 0
+vanguard mesh -p demo/fins --quiet --write b8.ugrid
+exits 0
+vanguard check demo/fins.b8.ugrid
+exits 0
+says out "2 solid"
+says out " 0.03584 "
+says out "  fins"
 
 # --- refused ---------------------------------------------------------------------
 
