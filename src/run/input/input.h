@@ -163,6 +163,9 @@ struct vg_boundary {
   const struct vg_size_map *map; /* Sizes in addition to sources, from a file
                                     and from gaps; NULL: none. */
   struct vg_gap_sizes *gaps;     /* Sizes of gap_edges; NULL: none. */
+  size_t n_periodic;             /* Pairs of periodic patches, where the surface
+                                    was closed (run/input/periodic.h). */
+  struct vg_periodic *periodic;  /* [n_periodic] owned */
   struct vg_zones *zones;        /* Zones of cells and their sizes, where the
                                     surface was closed; NULL: none. */
   size_t n_welded, n_dropped;    /* Points merged and triangles dropped by the

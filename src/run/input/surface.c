@@ -10,6 +10,7 @@
 #include "io/stream/convention.h"
 #include "io/vgrid/mapbc.h"
 #include "run/input/shape_parts.h"
+#include "run/input/periodic.h"
 #include "run/input/sizes.h"
 #include "run/input/zone_table.h"
 #include "run/settings/deck.h"
@@ -570,12 +571,14 @@ vg_status vg_boundary_shape(struct vg_read *read,
   vg_mesh_keep_boundary(&b->surface);
   VG_TRY(check_range(b, err));
   b->require_bc = has_conditions(&b->surface);
+  b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
+  VG_TRY(vg_periodic_refuse(b, err));
   if (read->is_section) {
+    b->is_remeshed = 0;
     VG_TRY(vg_boundary_divide_section(b, err));
     st = take_rows(b, 0, NULL, err);
     goto done;
   }
-  b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
     VG_TRY(vg_boundary_take_inner(b, err));
@@ -614,6 +617,23 @@ static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
                show, err);
 }
 
+/* Makes periodic patches equal. */
+static vg_status settle_periodic(struct vg_boundary *b, struct vg_display *show,
+                                 struct vg_error *err)
+{
+  size_t n_moved;
+  vg_status st = vg_periodic_settle(b, &n_moved, err);
+
+  if (st < 0 || !n_moved) return st;
+  vg_note(b->notes,
+          "periodic patches: %zu points were moved to the images of others",
+          n_moved);
+  VG_TRY(check(b, 0, show, err));
+  st = defects(b, show, err);
+done:
+  return st;
+}
+
 vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err)
 {
@@ -637,6 +657,7 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
     st = defects(b, show, err);
   }
   if (st >= 0) st = vg_zones_check(b, err);
+  if (st >= 0) st = settle_periodic(b, show, err);
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
