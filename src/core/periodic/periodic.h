@@ -26,11 +26,14 @@ void vg_periodic_image(const struct vg_periodic *p, const double x[3],
 /** The angle of a rotation in degrees, for reports; from -180 to 180. */
 double vg_periodic_degrees(const struct vg_periodic *p);
 
-/** S100. Sets cosine, sine and n for an angle in degrees, from -180 to 180.
- * Angles within VG_PERIODIC_DEGREES of 360 / n, n = 2 to VG_PERIODIC_MOST,
- * become that fraction of a turn. */
+/* S100: angles and components that are exact except for rounding. */
 #define VG_PERIODIC_DEGREES 1e-3
 #define VG_PERIODIC_MOST 360
+#define VG_PERIODIC_ZERO 1e-6
+
+/** Sets cosine, sine and n for an angle in degrees, from -180 to 180.
+ * Angles within VG_PERIODIC_DEGREES of 360 / n, n = 2 to VG_PERIODIC_MOST,
+ * become that fraction of a turn. */
 void vg_periodic_turn(struct vg_periodic *p, double degrees);
 
 /** Finds the transform from the areas and centroids of the patches of p: a
@@ -38,7 +41,6 @@ void vg_periodic_turn(struct vg_periodic *p, double degrees);
  * of axis and centre below VG_PERIODIC_ZERO (relative) become 0. The transform
  * is a guess until vg_periodic_match succeeds. Returns 0 if there is none.
  * O(n). */
-#define VG_PERIODIC_ZERO 1e-6
 int vg_periodic_find(const struct vg_mesh *m, struct vg_periodic *p);
 
 #define VG_PERIODIC_NONE UINT32_MAX
@@ -49,8 +51,7 @@ struct vg_periodic_match {
   double area[2];
   double distance; /* largest distance of the image of a point of the patch
                       from the nearest point of the image patch */
-  uint32_t
-    worst; /* that point of the patch; VG_PERIODIC_NONE: it has no points */
+  uint32_t worst;  /* that point; VG_PERIODIC_NONE: the patch has none */
   size_t n_off;    /* points without a partner, or that share one */
   size_t n_bad;    /* faces without a partner of opposite orientation; counted
                       if n_off is 0 */

@@ -14,7 +14,6 @@
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
 #include "layers/slide/slide.h"
-#include "run/input/periodic.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
@@ -149,7 +148,7 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
   const struct vg_mesh *m = &b->surface;
 
   for (size_t i = 0; i < m->n_patch; i++)
-    if (reason[i] != VG_WALL_NOT && vg_periodic_has(b, m->patch[i].id))
+    if (reason[i] != VG_WALL_NOT && vg_pairs_have(&b->pairs, m->patch[i].id))
       return vg_fail(err, VG_ERR_INPUT,
                      "patch %d%s%s is periodic, but layers would grow on it "
                      "(%s); remove it from the list walls, from the table "
@@ -201,7 +200,7 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
   if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
-  if (has_faces && !b->require_bc && !vg_periodic_has(b, patch->id) &&
+  if (has_faces && !b->require_bc && !vg_pairs_have(&b->pairs, patch->id) &&
       vg_walls_asked(&b->read->settings) && is_given(b, patch->id) &&
       is_bare_wall(b, i))
     return VG_WALL_BODY;
@@ -343,7 +342,7 @@ vg_status vg_walls_extend(const struct vg_boundary *b,
   for (size_t i = 0; i < m->n_patch; i++) {
     is_wall[i] = reason[i] != VG_WALL_NOT && !m->patch[i].inner;
     may[i] = reason[i] == VG_WALL_NOT && i < n_own(b) && !m->patch[i].inner &&
-             !vg_periodic_has(b, m->patch[i].id) &&
+             !vg_pairs_have(&b->pairs, m->patch[i].id) &&
              vg_settings_layer_row(&b->read->settings, m->patch[i].id).grow !=
                VG_ANSWER_NO;
   }
@@ -388,7 +387,7 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   vg_status st;
 
   /* Triangles in a stretched metric may have small angles. */
-  if (vg_mesh_has_inner(&b->surface) || b->read->is_section || b->n_periodic)
+  if (vg_mesh_has_inner(&b->surface) || b->read->is_section || b->pairs.n)
     return VG_OK;
   b->is_swapped = answer == VG_ANSWER_AUTO ? !vg_boundary_is_stretched(b) &&
                                                has_slivers(&b->surface, reason)

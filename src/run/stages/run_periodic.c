@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Periodic patches of the finished mesh. Declared in run/stages/run.h. */
 #include "io/slices/slices.h"
-#include "run/input/periodic.h"
+#include "run/periodic/periodic_pairs.h"
 #include "run/stages/run.h"
+
+static const char layers_differ[] =
+  "the layers changed them in different ways; end the layers before these "
+  "patches, or grow none";
 
 vg_status vg_run_verify_front(const struct vg_run *r,
                               const struct vg_problem *p,
@@ -12,7 +16,9 @@ vg_status vg_run_verify_front(const struct vg_run *r,
   vg_status st = VG_OK;
 
   if (!p->read.settings.n_periodic) return VG_OK;
-  if (!r->rank) st = vg_periodic_verify(&p->boundary, front, &distance, err);
+  if (!r->rank)
+    st = vg_pairs_verify(&p->boundary.pairs, front, layers_differ, &distance,
+                         err);
   return vg_comm_agree(r->comm, st, err);
 }
 
@@ -25,7 +31,8 @@ vg_status vg_run_verify_periodic(struct vg_run *r, const struct vg_problem *p,
   if (!p->read.settings.n_periodic) return VG_OK;
   VG_TRY(vg_slices_boundary(r->comm, &r->slices, r->threads, &m, err));
   if (!r->rank)
-    st = vg_periodic_verify(&p->boundary, &m, &r->periodic_distance, err);
+    st = vg_pairs_verify(&p->boundary.pairs, &m, layers_differ,
+                         &r->periodic_distance, err);
   st = vg_comm_agree(r->comm, st, err);
 done:
   vg_mesh_release(&m);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "run/input/periodic.h"
+#include "run/periodic/periodic_pairs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "run/input/shape_parts.h"
+#include "core/mesh/mesh.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/periodic_table.h"
 
@@ -15,46 +15,20 @@
  * of the extent of both patches: coordinates may have six digits. */
 #define TOLERANCE 1e-5
 
-vg_status vg_periodic_refuse(const struct vg_boundary *b, struct vg_error *err)
+int vg_pairs_have(const struct vg_pairs *list, int32_t id)
 {
-  const struct vg_settings *s = &b->read->settings;
-  const char *what = b->read->is_section        ? "the input is a plane section"
-                   : s->wrap > 0                ? "wrap is given"
-                   : vg_boundary_wants_inner(b) ? "baffles, sheets or "
-                                                  "interfaces are given"
-                   : s->swap == VG_ANSWER_YES   ? "surface_swap is yes"
-                                                : NULL;
-
-  if (!s->n_periodic) return VG_OK;
-  if (b->is_remeshed)
-    return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: the table periodic requires patches whose triangles "
-                   "are used as given, but the surface is remeshed; give a "
-                   "surface with matching triangles, and remesh_surface no",
-                   b->read->files.stem);
-  if (what)
-    return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: the table periodic requires patches whose triangles "
-                   "are used as given, but %s; remove one of them",
-                   b->read->files.stem, what);
-  return VG_OK;
-}
-
-int vg_periodic_has(const struct vg_boundary *b, int32_t id)
-{
-  for (size_t i = 0; i < b->n_periodic; i++)
-    if (b->periodic[i].patch == id || b->periodic[i].image == id) return 1;
+  for (size_t i = 0; i < list->n; i++)
+    if (list->pair[i].patch == id || list->pair[i].image == id) return 1;
   return 0;
 }
 
 /* --- the pairs ------------------------------------------------------------ */
 
 /* The one patch that a column names. */
-static vg_status find_patch(const struct vg_boundary *b, size_t line,
-                            int32_t id, const char *name, int32_t *out,
+static vg_status find_patch(const struct vg_mesh *m, size_t line, int32_t id,
+                            const char *name, int32_t *out,
                             struct vg_error *err)
 {
-  const struct vg_mesh *m = &b->surface;
   uint8_t *on = vg_calloc(m->n_patch, 1);
   const struct vg_patch *found = NULL;
   vg_status st;
@@ -159,10 +133,9 @@ static vg_status mismatch(const struct vg_mesh *m, const struct vg_periodic *p,
 }
 
 /* Matches a pair, and moves the points of its image. */
-static vg_status settle(struct vg_boundary *b, struct vg_periodic *p,
-                        int is_found, size_t *n_moved, struct vg_error *err)
+static vg_status settle(struct vg_mesh *m, struct vg_periodic *p, int is_found,
+                        size_t *n_moved, struct vg_error *err)
 {
-  struct vg_mesh *m = &b->surface;
   const double tolerance = TOLERANCE * vg_periodic_extent(m, p);
   struct vg_periodic_match r = VG_PERIODIC_MATCH_INIT;
   vg_status st;
@@ -187,90 +160,93 @@ done:
   return st;
 }
 
-static vg_status add_pair(struct vg_boundary *b, size_t i, size_t *n_moved,
-                          struct vg_error *err)
+static vg_status add_pair(struct vg_pairs *list, struct vg_mesh *m,
+                          const struct vg_periodic_row *row, size_t line,
+                          size_t *n_moved, struct vg_error *err)
 {
-  const struct vg_periodic_row *row = &b->read->settings.periodic_row[i];
   struct vg_periodic p = { .patch = 0 };
   char pair[2 * VG_NAME_MAX + 60];
   int is_given;
   vg_status st;
 
-  VG_TRY(find_patch(b, i + 1, row->patch, row->patch_name, &p.patch, err));
-  VG_TRY(find_patch(b, i + 1, row->image, row->image_name, &p.image, err));
+  VG_TRY(find_patch(m, line, row->patch, row->patch_name, &p.patch, err));
+  VG_TRY(find_patch(m, line, row->image, row->image_name, &p.image, err));
   if (p.patch == p.image)
     return vg_fail(err, VG_ERR_INPUT,
                    "periodic: line %zu: patch %d is paired with itself; name "
                    "another patch as its image",
-                   i + 1, (int)p.patch);
-  if (vg_periodic_has(b, p.patch) || vg_periodic_has(b, p.image))
+                   line, (int)p.patch);
+  if (vg_pairs_have(list, p.patch) || vg_pairs_have(list, p.image))
     return vg_fail(err, VG_ERR_INPUT,
                    "periodic: line %zu: patch %d is in an earlier line, too; "
                    "a patch has one partner",
-                   i + 1,
-                   (int)(vg_periodic_has(b, p.patch) ? p.patch : p.image));
+                   line,
+                   (int)(vg_pairs_have(list, p.patch) ? p.patch : p.image));
   is_given = take_transform(row, &p);
   if (!is_given &&
-      (!vg_periodic_find(&b->surface, &p) ||
+      (!vg_periodic_find(m, &p) ||
        (row->kind && p.is_rotation != (row->kind == VG_PERIODIC_ROTATION))))
     return vg_fail(err, VG_ERR_GEOMETRY,
                    "periodic: line %zu: no %s takes %s to each other, by their "
                    "areas, mean normals and centroids; check the patches, or "
                    "give the transform in the table",
-                   i + 1,
+                   line,
                    row->kind == VG_PERIODIC_ROTATION      ? "rotation"
                    : row->kind == VG_PERIODIC_TRANSLATION ? "translation"
                                                           : "transform",
-                   name_of(&b->surface, &p, pair, sizeof pair));
-  VG_TRY(settle(b, &p, !is_given, n_moved, err));
-  b->periodic[b->n_periodic++] = p;
+                   name_of(m, &p, pair, sizeof pair));
+  VG_TRY(settle(m, &p, !is_given, n_moved, err));
+  list->pair[list->n++] = p;
 done:
   return st;
 }
 
-vg_status vg_periodic_settle(struct vg_boundary *b, size_t *n_moved,
-                             struct vg_error *err)
+vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
+                          struct vg_pairs *list, size_t *n_moved,
+                          struct vg_error *err)
 {
-  const size_t n = b->read->settings.n_periodic;
+  const size_t n = s->n_periodic;
   double distance;
   vg_status st = VG_OK;
 
   *n_moved = 0;
-  free(b->periodic);
-  b->periodic = NULL;
-  b->n_periodic = 0;
+  vg_pairs_release(list);
   if (!n) return VG_OK;
-  b->periodic = vg_alloc(n, sizeof *b->periodic);
-  if (!b->periodic) return vg_fail_memory(err, "the periodic patches");
-  for (size_t i = 0; i < n && st >= 0; i++) st = add_pair(b, i, n_moved, err);
+  list->pair = vg_alloc(n, sizeof *list->pair);
+  if (!list->pair) return vg_fail_memory(err, "the periodic patches");
+  for (size_t i = 0; i < n && st >= 0; i++)
+    st = add_pair(list, m, &s->periodic_row[i], i + 1, n_moved, err);
   /* Pairs that share edges may have moved points of each other. */
-  if (st >= 0) st = vg_periodic_verify(b, &b->surface, &distance, err);
+  if (st >= 0)
+    st = vg_pairs_verify(list, m,
+                         "periodic patches that share edges must have "
+                         "transforms that agree there",
+                         &distance, err);
   return st;
 }
 
-vg_status vg_periodic_verify(const struct vg_boundary *b,
-                             const struct vg_mesh *m, double *distance,
-                             struct vg_error *err)
+void vg_pairs_release(struct vg_pairs *list)
+{
+  free(list->pair);
+  *list = (struct vg_pairs)VG_PAIRS_INIT;
+}
+
+vg_status vg_pairs_verify(const struct vg_pairs *list, const struct vg_mesh *m,
+                          const char *remedy, double *distance,
+                          struct vg_error *err)
 {
   vg_status st = VG_OK;
 
   *distance = 0;
-  for (size_t i = 0; i < b->n_periodic && st >= 0; i++) {
-    const struct vg_periodic *p = &b->periodic[i];
+  for (size_t i = 0; i < list->n && st >= 0; i++) {
+    const struct vg_periodic *p = &list->pair[i];
     const double exact = VG_PERIODIC_EXACT * vg_periodic_extent(m, p);
     struct vg_periodic_match r = VG_PERIODIC_MATCH_INIT;
 
     st = vg_periodic_match(m, p, exact, &r, err);
     if (st < 0) break;
     *distance = fmax(*distance, r.distance);
-    if (!vg_periodic_matches(&r))
-      st = mismatch(m, p, exact, &r,
-                    m == &b->surface
-                      ? "periodic patches that share edges must have "
-                        "transforms that agree there"
-                      : "the layers changed them in different ways; end the "
-                        "layers before these patches, or grow none",
-                    err);
+    if (!vg_periodic_matches(&r)) st = mismatch(m, p, exact, &r, remedy, err);
     vg_periodic_match_release(&r);
   }
   return st;
