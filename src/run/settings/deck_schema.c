@@ -142,8 +142,8 @@ static const char *const further[][2] = {
     "name different axes" },
   { "periodic",
     "periodic: tx, ty and tz are given together and not all 0, or angle, not "
-    "0, with ux, uy and uz, which are given together and not all 0, or neither; "
-    "x, y and z only with an angle; kind does not contradict them" },
+    "0, with ux, uy and uz, which are given together and not all 0, or "
+    "neither; x, y and z only with an angle; kind does not contradict them" },
   { "corners", "farfield: each lower corner is below the upper one" },
   { "patches", "patches, layers: no two rows have the same number as id" },
   { "bytes",
