@@ -27,6 +27,9 @@ def run(program, *words):
 
 # --- conditions that JSON Schema cannot express ------------------------------
 
+PATCH_LISTS = ("walls", "slip", "baffles", "sheets", "zone_interfaces")
+
+
 def settings(deck):
     return deck.get("settings", {})
 
@@ -37,7 +40,7 @@ def positive(values, name):
 
 
 def ranges(deck):
-    for name in ("walls", "slip"):
+    for name in PATCH_LISTS:
         text = settings(deck).get(name, "")
         for item in text.replace(",", " ").split():
             low, dash, high = item[1:].partition("-")
@@ -80,6 +83,26 @@ def wakes(deck):
                for r in deck.get("wakes", ()))
 
 
+def periodic(deck):
+    def given(row, names):
+        return [row[k] for k in names.split() if row.get(k) is not None]
+
+    for r in deck.get("periodic", ()):
+        shift, axis = given(r, "tx ty tz"), given(r, "ux uy uz")
+        if any(isinstance(v, str) for v in shift + given(r, "x y z")):
+            return None   # with units, the program may check later
+        angle, kind = given(r, "angle"), r.get("kind", "auto")
+        if len(shift) % 3 or len(axis) % 3 or bool(angle) != bool(axis):
+            return False
+        if any(v and not any(v) for v in (shift, axis, angle)):
+            return False
+        if given(r, "x y z") and not angle or shift and angle:
+            return False
+        if shift and kind == "rotation" or angle and kind == "translation":
+            return False
+    return True
+
+
 def patches(deck):
     for table in ("patches", "layers"):
         ids = [r["id"] for r in deck.get(table, ())
@@ -104,13 +127,14 @@ def bytes_of(value, schema):
 
 
 CONDITIONS = {"ranges": ranges, "sizes": sizes, "first-height": first_height,
-              "corners": corners, "wakes": wakes, "patches": patches,
+              "corners": corners, "wakes": wakes,
+              "periodic": periodic, "patches": patches,
               "bytes": None}
 
 
 def list_names(deck):
     """The names in lists of patches have at most 79 bytes."""
-    texts = [settings(deck).get(k, "") for k in ("walls", "slip")]
+    texts = [settings(deck).get(k, "") for k in PATCH_LISTS]
     return all(len(item.encode()) <= 79 for text in texts if text != ""
                for item in text.replace(",", " ").split())
 

@@ -234,7 +234,8 @@ static int patch_is(const struct foam *f, const char *name, const char *type,
   return strstr(f->boundary, text) != NULL;
 }
 
-static const struct vg_foam_options as[2] = { { 0 }, { 1 } };
+static const struct vg_foam_options as[2] = { { .is_ascii = 0 },
+                                              { .is_ascii = 1 } };
 
 static void write_case(const char *dir, const struct vg_mesh *m, int is_ascii)
 {
@@ -633,7 +634,7 @@ static void a_point_of_many_cells(void **state)
 
 static void format_words(void **state)
 {
-  struct vg_foam_options o = { 7 };
+  struct vg_foam_options o = { .is_ascii = 7 };
 
   (void)state;
   assert_false(vg_foam_word("open", &o));

@@ -48,8 +48,8 @@ void vg_mesh_log_settings(const struct vg_run *r,
                           const struct vg_settings *asked)
 {
   static const enum vg_table_kind table[] = {
-    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
-    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS,   VG_TABLE_SURFACE, VG_TABLE_WAKES,
+    VG_TABLE_ZONES,   VG_TABLE_PERIODIC, VG_TABLE_SOURCES
   };
   const struct vg_param *p;
   const char *name;

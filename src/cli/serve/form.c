@@ -89,8 +89,8 @@ static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_form_fault *fault, struct vg_error *err)
 {
   static const enum vg_table_kind tables[] = {
-    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
-    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS,   VG_TABLE_SURFACE, VG_TABLE_WAKES,
+    VG_TABLE_ZONES,   VG_TABLE_PERIODIC, VG_TABLE_SOURCES
   };
   vg_status st = VG_OK;
 
@@ -104,6 +104,7 @@ static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
     if (tables[i] == VG_TABLE_SURFACE) s->n_surface = 0;
     if (tables[i] == VG_TABLE_WAKES) s->n_wake = 0;
     if (tables[i] == VG_TABLE_ZONES) s->n_zone = 0;
+    if (tables[i] == VG_TABLE_PERIODIC) s->n_periodic = 0;
     if (tables[i] == VG_TABLE_SOURCES) s->n_source = 0;
     st = vg_rows_read(text, tables[i], s, err);
     if (st >= 0) continue;

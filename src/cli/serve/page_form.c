@@ -359,6 +359,8 @@ static void print_tables(FILE *to, const struct vg_form_view *v)
               "patch  length  alpha\n*      2       0,4");
   print_table(to, v, VG_TABLE_ZONES, "Zones",
               "name   x  y  z  kind\nrotor  0  0  0  rotating");
+  print_table(to, v, VG_TABLE_PERIODIC, "Periodic patches",
+              "patch  image\nlo     hi");
   print_table(to, v, VG_TABLE_SOURCES, "Sources",
               "kind   x0  y0  z0  r0  h0\npoint  0   0   0   0   0.01");
 }

@@ -167,8 +167,8 @@ static size_t print_settings(FILE *to, const struct vg_settings *s, size_t n)
 static size_t print_tables(FILE *to, const struct vg_settings *s, size_t n)
 {
   static const enum vg_table_kind kinds[] = {
-    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE,
-    VG_TABLE_WAKES,   VG_TABLE_ZONES,  VG_TABLE_SOURCES
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS,   VG_TABLE_SURFACE, VG_TABLE_WAKES,
+    VG_TABLE_ZONES,   VG_TABLE_PERIODIC, VG_TABLE_SOURCES
   };
   size_t found = 0;
 

@@ -133,6 +133,7 @@ union row {
   struct vg_surface_row f;
   struct vg_wake_row k;
   struct vg_zone_row z;
+  struct vg_periodic_row o;
   struct vg_source s;
 };
 

@@ -218,12 +218,15 @@ static void close_list(struct labels *l)
   vg_output_text(l->out, ")\n");
 }
 
+/* first: node at which the list begins; VG_PERIODIC_NONE: as it is. */
 static void put_face(struct labels *l, const struct vg_cell_links *f,
-                     uint32_t code)
+                     uint32_t code, uint32_t first)
 {
-  uint32_t node[4];
-  int width = vg_half_face_nodes(f, code, node);
+  uint32_t face[4], node[4];
+  int width = vg_half_face_nodes(f, code, face), at = 0;
 
+  while (first != VG_PERIODIC_NONE && at + 1 < width && face[at] != first) at++;
+  for (int k = 0; k < width; k++) node[k] = face[(at + k) % width];
   if (!l->is_ascii) {
     for (int k = 0; k < width; k++) put_label(l, node[k]);
     return;
@@ -242,6 +245,9 @@ struct writing {
   const struct vg_mesh *m;
   struct vg_cell_links faces;
   size_t *start, *order; /* boundary faces by patch */
+  uint32_t *first;       /* [boundary face] node at which a face of a periodic
+                            image begins; NULL: no face is in one */
+  const struct vg_foam_options *options; /* may be NULL */
   const char *folder;
   int is_ascii;
   char note[160];
@@ -322,10 +328,11 @@ static void put_faces(struct writing *w, struct labels *l)
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
     int n = vg_foam_upper(f, cell, code, neighbour);
 
-    for (int i = 0; i < n; i++) put_face(l, f, code[i]);
+    for (int i = 0; i < n; i++) put_face(l, f, code[i], VG_PERIODIC_NONE);
   }
   for (size_t i = 0; i < n_boundary; i++)
-    put_face(l, f, f->boundary[w->order[i]]);
+    put_face(l, f, f->boundary[w->order[i]],
+             w->first ? w->first[w->order[i]] : VG_PERIODIC_NONE);
   close_list(l);
 }
 
@@ -346,6 +353,40 @@ static vg_status put_topology(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
+/* The pair of a patch; NULL: it has none. *other: the number of its partner */
+static const struct vg_periodic *pair_of(const struct writing *w, int32_t id,
+                                         int32_t *other)
+{
+  for (size_t i = 0; w->options && i < w->options->n_periodic; i++) {
+    const struct vg_periodic *p = &w->options->periodic[i];
+
+    *other = p->patch == id ? p->image : p->patch;
+    if (p->patch == id || p->image == id) return p;
+  }
+  return NULL;
+}
+
+/* OpenFOAM ignores the sign of a translation's vector in comparisons of
+ * patches, and the vector of the image is the reverse. */
+static void put_cyclic(struct vg_output *o, const struct vg_periodic *p,
+                       int is_image, const char *other)
+{
+  const double *v = p->is_rotation ? p->axis : p->shift;
+  double x[3];
+
+  for (int k = 0; k < 3; k++)
+    x[k] = is_image && !p->is_rotation ? 0 - v[k] : v[k];
+  vg_output_format(o,
+                   "        neighbourPatch  %s;\n        transform       %s;\n"
+                   "        %s (%.17g %.17g %.17g);\n",
+                   other, p->is_rotation ? "rotational" : "translational",
+                   p->is_rotation ? "rotationAxis   " : "separationVector",
+                   x[0], x[1], x[2]);
+  if (p->is_rotation)
+    vg_output_format(o, "        rotationCentre  (%.17g %.17g %.17g);\n",
+                     p->centre[0], p->centre[1], p->centre[2]);
+}
+
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
@@ -357,15 +398,24 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
   vg_output_format(o, "\n%zu\n(\n", w->m->n_patch);
   for (size_t i = 0; i < w->m->n_patch; i++) {
     size_t first = w->start[i], n = w->start[i + 1] - first;
+    int32_t other = 0;
+    const struct vg_periodic *pair = pair_of(w, w->m->patch[i].id, &other);
     const char *physical,
       *type = patch_type(w->m->patch + i, is_planar(w->m, w->order + first, n),
                          &physical);
 
     if (thin && is_symmetry(w->m->patch + i)) type = physical = "empty";
+    if (pair) {
+      type = "cyclic";
+      physical = "";
+    }
     vg_output_format(o, "    %s\n    {\n        type            %s;\n", name[i],
                      type);
     if (*physical)
       vg_output_format(o, "        physicalType    %s;\n", physical);
+    if (pair)
+      put_cyclic(o, pair, other == pair->patch,
+                 name[vg_mesh_find_patch(w->m, other)]);
     vg_output_format(o,
                      "        nFaces          %zu;\n"
                      "        startFace       %llu;\n    }\n",
@@ -547,6 +597,52 @@ static vg_status put_mesh(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
+/* Puts the faces of the image of a pair in the order of their partners, and
+ * lets each begin at the partner of the first node. */
+static vg_status order_pair(struct writing *w, const struct vg_periodic *p,
+                            const char *name, struct vg_error *err)
+{
+  const size_t a = vg_mesh_find_patch(w->m, p->patch);
+  const size_t b = vg_mesh_find_patch(w->m, p->image);
+  struct vg_periodic_match r = VG_PERIODIC_MATCH_INIT;
+  uint32_t node[4];
+  vg_status st;
+
+  VG_TRY(
+    vg_periodic_match(w->m, p, 1e-5 * vg_periodic_extent(w->m, p), &r, err));
+  if (!vg_periodic_matches(&r))
+    VG_TRY(vg_fail(err, VG_ERR_INPUT,
+                   "%s: the faces of the periodic patches %d and %d do not "
+                   "match",
+                   name, (int)p->patch, (int)p->image));
+  for (size_t i = 0; i < r.n_face[0]; i++) {
+    const size_t face = w->order[w->start[a] + i];
+    const uint32_t other = r.face[face];
+
+    w->order[w->start[b] + i] = other;
+    vg_half_face_nodes(&w->faces, w->faces.boundary[face], node);
+    w->first[other] = r.point[node[0]];
+  }
+done:
+  vg_periodic_match_release(&r);
+  return st;
+}
+
+static vg_status order_periodic(struct writing *w, const char *name,
+                                struct vg_error *err)
+{
+  const size_t n = w->m->n_tri + w->m->n_quad;
+  vg_status st = VG_OK;
+
+  if (!w->options || !w->options->n_periodic) return VG_OK;
+  w->first = vg_alloc(n, sizeof *w->first);
+  if (!w->first) return vg_fail_memory(err, "the periodic patches");
+  memset(w->first, 0xff, n * sizeof *w->first);
+  for (size_t i = 0; i < w->options->n_periodic && st >= 0; i++)
+    st = order_pair(w, &w->options->periodic[i], name, err);
+  return st;
+}
+
 static void remove_mesh(const char *folder)
 {
   for (int i = 0; i < VG_FOAM_FILES + 2; i++) {
@@ -590,7 +686,8 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
   const struct vg_output none = VG_OUTPUT_INIT;
   struct writing w = { .m = m,
                        .faces = VG_CELL_LINKS_INIT,
-                       .is_ascii = options && options->is_ascii };
+                       .is_ascii = options && options->is_ascii,
+                       .options = options };
   char *constant = vg_foam_path(case_dir, "constant");
   vg_status st;
 
@@ -605,6 +702,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
   }
   VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));
   VG_TRY(vg_foam_links(&w.faces, m, case_dir, err));
+  VG_TRY(order_periodic(&w, case_dir, err));
   st = write_into(case_dir, constant, &w, err);
   if (st < 0) {
     /* Remove the folders if they are empty. */
@@ -615,6 +713,7 @@ done:
   vg_cell_links_release(&w.faces);
   free(w.start);
   free(w.order);
+  free(w.first);
   free(constant);
   return st;
 }

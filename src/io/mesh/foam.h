@@ -22,12 +22,17 @@
 #define VG_IO_MESH_FOAM_H
 
 #include "core/mesh/mesh.h"
+#include "core/periodic/periodic.h"
 
 #define VG_FOAM_SUFFIX "openfoam"
 #define VG_FOAM_PARTS "cellDecomposition"
 
 struct vg_foam_options {
   int is_ascii; /* 1: text with all digits; 0: binary in host byte order */
+  /* Pairs of patches that are written as `cyclic`: their faces are in the same
+   * order, and begin at the same point. Borrowed; [n_periodic]. */
+  size_t n_periodic;
+  const struct vg_periodic *periodic;
 };
 
 /** Returns 1 if `word` of a write list requests a case; sets *options. */

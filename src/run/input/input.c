@@ -81,6 +81,7 @@ void vg_boundary_release(struct vg_boundary *b)
   vg_remeshing_release(&b->remeshing);
   vg_cad_model_release(&b->model);
   free(b->row);
+  vg_pairs_release(&b->pairs);
   free(b->given_area.id);
   free(b->given_area.area);
 }

@@ -17,6 +17,7 @@
 #include "core/wake/wake.h"
 #include "io/cad/cad.h"
 #include "run/common/progress.h"
+#include "run/periodic/periodic_pairs.h"
 #include "run/settings/resolved.h"
 
 /** Paths of the files that exist; "" for a file that is absent. */
@@ -171,6 +172,8 @@ struct vg_boundary {
   const struct vg_size_map *map; /* Sizes in addition to sources, from a file
                                     and from gaps; NULL: none. */
   struct vg_gap_sizes *gaps;     /* Sizes of gap_edges; NULL: none. */
+  struct vg_pairs pairs;         /* Periodic patches, where the surface was
+                                    closed. */
   struct vg_zones *zones;        /* Zones of cells and their sizes, where the
                                     surface was closed; NULL: none. */
   size_t n_welded, n_dropped;    /* Points merged and triangles dropped by the

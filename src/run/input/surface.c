@@ -553,6 +553,27 @@ static vg_status check_range(const struct vg_boundary *b, struct vg_error *err)
                  EXTENT_MIN);
 }
 
+/* Periodic patches keep their triangles. */
+static vg_status refuse_periodic(const struct vg_boundary *b,
+                                 struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const char *what = b->is_remeshed ? "the surface is remeshed (remesh_surface)"
+                   : b->read->is_section ? "the input is a plane section"
+                   : s->wrap > 0         ? "wrap is given"
+                   : vg_boundary_wants_inner(b)
+                     ? "baffles, sheets or interfaces are given"
+                   : s->swap == VG_ANSWER_YES ? "surface_swap is yes"
+                                              : NULL;
+
+  if (!s->n_periodic || !what) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: the table periodic requires patches whose triangles "
+                 "match and are used as given, but %s; change this, or remove "
+                 "the table",
+                 b->read->files.stem, what);
+}
+
 vg_status vg_boundary_shape(struct vg_read *read,
                             const struct vg_shape_options *o,
                             struct vg_display *show, struct vg_boundary *b,
@@ -570,12 +591,14 @@ vg_status vg_boundary_shape(struct vg_read *read,
   vg_mesh_keep_boundary(&b->surface);
   VG_TRY(check_range(b, err));
   b->require_bc = has_conditions(&b->surface);
+  b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
+  VG_TRY(refuse_periodic(b, err));
   if (read->is_section) {
+    b->is_remeshed = 0;
     VG_TRY(vg_boundary_divide_section(b, err));
     st = take_rows(b, 0, NULL, err);
     goto done;
   }
-  b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
     VG_TRY(vg_boundary_take_inner(b, err));
@@ -614,6 +637,24 @@ static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
                show, err);
 }
 
+/* Makes periodic patches equal. */
+static vg_status settle_periodic(struct vg_boundary *b, struct vg_display *show,
+                                 struct vg_error *err)
+{
+  size_t n_moved;
+  vg_status st = vg_pairs_settle(&b->read->settings, &b->surface, &b->pairs,
+                                 &n_moved, err);
+
+  if (st < 0 || !n_moved) return st;
+  vg_note(b->notes,
+          "periodic patches: %zu points were moved to the images of others",
+          n_moved);
+  VG_TRY(check(b, 0, show, err));
+  st = defects(b, show, err);
+done:
+  return st;
+}
+
 vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err)
 {
@@ -637,6 +678,7 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
     st = defects(b, show, err);
   }
   if (st >= 0) st = vg_zones_check(b, err);
+  if (st >= 0) st = settle_periodic(b, show, err);
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

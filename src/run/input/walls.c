@@ -141,6 +141,24 @@ static vg_status refuse_sheet(const struct vg_mesh *m,
   return VG_OK;
 }
 
+static vg_status refuse_periodic(const struct vg_boundary *b,
+                                 const enum vg_wall_reason *reason,
+                                 struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (reason[i] != VG_WALL_NOT && vg_pairs_have(&b->pairs, m->patch[i].id))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "patch %d%s%s is periodic, but layers would grow on it "
+                     "(%s); remove it from the list walls, from the table "
+                     "layers or from the table periodic, or correct its "
+                     "boundary condition",
+                     (int)m->patch[i].id, *m->patch[i].name ? " " : "",
+                     m->patch[i].name, vg_wall_reason_name(reason[i]));
+  return VG_OK;
+}
+
 /* A patch without faces cannot have layers, even if they are requested. */
 static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
                               const enum vg_wall_reason *reason,
@@ -182,8 +200,9 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
   if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
-  if (has_faces && !b->require_bc && vg_walls_asked(&b->read->settings) &&
-      is_given(b, patch->id) && is_bare_wall(b, i))
+  if (has_faces && !b->require_bc && !vg_pairs_have(&b->pairs, patch->id) &&
+      vg_walls_asked(&b->read->settings) && is_given(b, patch->id) &&
+      is_bare_wall(b, i))
     return VG_WALL_BODY;
   return VG_WALL_NOT;
 }
@@ -300,6 +319,8 @@ vg_status vg_walls_find(const struct vg_boundary *b,
     reason[i] = by_input(b, i, has_faces[i]);
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   VG_TRY(refuse_sheet(m, reason, err));
+  if (vg_walls_asked(&b->read->settings) || b->require_bc)
+    VG_TRY(refuse_periodic(b, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
   if (!*n_wall && vg_walls_asked(&b->read->settings)) st = no_walls(b, err);
@@ -321,6 +342,7 @@ vg_status vg_walls_extend(const struct vg_boundary *b,
   for (size_t i = 0; i < m->n_patch; i++) {
     is_wall[i] = reason[i] != VG_WALL_NOT && !m->patch[i].inner;
     may[i] = reason[i] == VG_WALL_NOT && i < n_own(b) && !m->patch[i].inner &&
+             !vg_pairs_have(&b->pairs, m->patch[i].id) &&
              vg_settings_layer_row(&b->read->settings, m->patch[i].id).grow !=
                VG_ANSWER_NO;
   }
@@ -365,7 +387,8 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   vg_status st;
 
   /* Triangles in a stretched metric may have small angles. */
-  if (vg_mesh_has_inner(&b->surface) || b->read->is_section) return VG_OK;
+  if (vg_mesh_has_inner(&b->surface) || b->read->is_section || b->pairs.n)
+    return VG_OK;
   b->is_swapped = answer == VG_ANSWER_AUTO ? !vg_boundary_is_stretched(b) &&
                                                has_slivers(&b->surface, reason)
                                            : answer == VG_ANSWER_YES;

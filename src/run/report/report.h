@@ -107,6 +107,13 @@ struct vg_wake_count vg_report_wake_count(size_t n,
                                           const struct vg_wake_probe *probe,
                                           size_t wake, size_t station);
 
+/** Pairs of periodic patches and their transforms; prints nothing without any.
+ * p: [n]; distance: the largest one in the mesh. */
+struct vg_periodic;
+void vg_report_periodic_text(FILE *to, size_t n, const struct vg_periodic *p,
+                             double distance);
+json_t *vg_report_periodic_json(size_t n, const struct vg_periodic *p);
+
 /** Cells across all wakes; prints nothing without wakes. probe: [n] measured by
  * vg_wake_measure. */
 void vg_report_wakes_text(FILE *to, const struct vg_read_wakes *w, size_t n,

@@ -335,6 +335,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     struct vg_surface_row surface;
     struct vg_wake_row wake;
     struct vg_zone_row zone;
+    struct vg_periodic_row periodic;
     struct vg_source source;
     struct vg_sweep_row sweep;
     struct vg_adapt_row adapt;

@@ -140,6 +140,10 @@ static const char *const further[][2] = {
   { "wakes",
     "wakes: size is at most length, and at most twice height; stream and up "
     "name different axes" },
+  { "periodic",
+    "periodic: tx, ty and tz are given together and not all 0, or angle, not "
+    "0, with ux, uy and uz, which are given together and not all 0, or "
+    "neither; x, y and z only with an angle; kind does not contradict them" },
   { "corners", "farfield: each lower corner is below the upper one" },
   { "patches", "patches, layers: no two rows have the same number as id" },
   { "bytes",

@@ -153,6 +153,7 @@ static const char *const example[VG_TABLE_N] = {
                      "# *      2       0,4\n\n",
   [VG_TABLE_ZONES] = "#\n# zones\n# name   x  y  z  kind      hmax\n"
                      "# rotor  0  0  0  rotating  0.01\n\n",
+  [VG_TABLE_PERIODIC] = "#\n# periodic\n# patch  image\n# lo     hi\n\n",
   [VG_TABLE_SOURCES] = "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
                        "# point  0   0   0   0   0.01\n\n",
   [VG_TABLE_SWEEP] = "#\n# sweep\n# ranks  threads  leaf_cells\n"
@@ -173,6 +174,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
     struct vg_surface_row u;
     struct vg_wake_row k;
     struct vg_zone_row z;
+    struct vg_periodic_row o;
     struct vg_source s;
     struct vg_sweep_row w;
     struct vg_adapt_row a;

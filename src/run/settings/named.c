@@ -275,6 +275,7 @@ vg_status vg_settings_copy(struct vg_settings *to,
 
   assert(to != from && !to->source && !to->patch);
   assert(!to->layer_row && !to->surface_row && !to->wake_row && !to->zone);
+  assert(!to->periodic_row);
   s.source = NULL;
   s.patch = NULL;
   s.layer_row = NULL;
@@ -282,6 +283,8 @@ vg_status vg_settings_copy(struct vg_settings *to,
   s.wake_row = NULL;
   s.n_wake = s.cap_wake = 0;
   s.zone = NULL;
+  s.periodic_row = NULL;
+  s.n_periodic = s.cap_periodic = 0;
   s.n_source = s.cap_source = s.n_patch = s.cap_patch = 0;
   s.n_layer = s.cap_layer = s.n_surface = s.cap_surface = 0;
   s.n_zone = s.cap_zone = 0;

@@ -20,6 +20,7 @@
 #include "run/settings/lists.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
+#include "run/settings/periodic_table.h"
 #include "run/settings/wake_table.h"
 
 #define MACH_MAX 100   /* beyond all flows of continua */
@@ -450,6 +451,7 @@ const struct vg_setting_table *vg_settings_table(enum vg_table_kind kind)
 {
   assert(kind < VG_TABLE_N);
   if (kind == VG_TABLE_SURFACE) return &vg_surface_table;
+  if (kind == VG_TABLE_PERIODIC) return &vg_periodic_table;
   return kind == VG_TABLE_WAKES ? &vg_wake_table : &tables[kind];
 }
 
@@ -479,6 +481,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_SURFACE: memcpy(row, &surface, sizeof surface); break;
   case VG_TABLE_WAKES: vg_wake_row_default(row); break;
   case VG_TABLE_ZONES: memcpy(row, &zone, sizeof zone); break;
+  case VG_TABLE_PERIODIC: vg_periodic_row_default(row); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
   case VG_TABLE_ADAPT: memcpy(row, &adapt, sizeof adapt); break;
@@ -517,8 +520,14 @@ void vg_settings_release(struct vg_settings *s)
   free(s->surface_row);
   free(s->wake_row);
   free(s->zone);
+  free(s->periodic_row);
   memset(s, 0, sizeof *s);
 }
+
+/* Append *row to a list of s. */
+#define APPEND(list, n, cap)                                                   \
+  refused = vg_reserve(&s->list, &s->cap, s->n + 1, sizeof *s->list);          \
+  if (!refused) memcpy(&s->list[s->n++], row, sizeof *s->list)
 
 vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                           const void *row, struct vg_error *err)
@@ -528,41 +537,17 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
   assert(kind < VG_TABLE_N && row);
   switch (kind) {
   case VG_TABLE_FARFIELD: memcpy(&s->farfield, row, sizeof s->farfield); break;
-  case VG_TABLE_PATCHES:
-    refused = vg_reserve(&s->patch, &s->cap_patch, s->n_patch + 1,
-                         sizeof *s->patch);
-    if (!refused) memcpy(&s->patch[s->n_patch++], row, sizeof *s->patch);
-    break;
-  case VG_TABLE_LAYERS:
-    refused = vg_reserve(&s->layer_row, &s->cap_layer, s->n_layer + 1,
-                         sizeof *s->layer_row);
-    if (!refused)
-      memcpy(&s->layer_row[s->n_layer++], row, sizeof *s->layer_row);
-    break;
-  case VG_TABLE_SURFACE:
-    refused = vg_reserve(&s->surface_row, &s->cap_surface, s->n_surface + 1,
-                         sizeof *s->surface_row);
-    if (!refused)
-      memcpy(&s->surface_row[s->n_surface++], row, sizeof *s->surface_row);
-    break;
-  case VG_TABLE_WAKES:
-    refused = vg_reserve(&s->wake_row, &s->cap_wake, s->n_wake + 1,
-                         sizeof *s->wake_row);
-    if (!refused) memcpy(&s->wake_row[s->n_wake++], row, sizeof *s->wake_row);
-    break;
-  case VG_TABLE_ZONES:
-    refused = vg_reserve(&s->zone, &s->cap_zone, s->n_zone + 1,
-                         sizeof *s->zone);
-    if (!refused) memcpy(&s->zone[s->n_zone++], row, sizeof *s->zone);
-    break;
+  case VG_TABLE_PATCHES: APPEND(patch, n_patch, cap_patch); break;
+  case VG_TABLE_LAYERS: APPEND(layer_row, n_layer, cap_layer); break;
+  case VG_TABLE_SURFACE: APPEND(surface_row, n_surface, cap_surface); break;
+  case VG_TABLE_WAKES: APPEND(wake_row, n_wake, cap_wake); break;
+  case VG_TABLE_ZONES: APPEND(zone, n_zone, cap_zone); break;
+  case VG_TABLE_PERIODIC: APPEND(periodic_row, n_periodic, cap_periodic); break;
   case VG_TABLE_SOURCES:
-    refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
-                         sizeof *s->source);
+    APPEND(source, n_source, cap_source);
     if (refused) break;
-    memcpy(&s->source[s->n_source], row, sizeof *s->source);
-    if (s->source[s->n_source].h1 == 0)
-      s->source[s->n_source].h1 = s->source[s->n_source].h0;
-    s->n_source++;
+    if (s->source[s->n_source - 1].h1 == 0)
+      s->source[s->n_source - 1].h1 = s->source[s->n_source - 1].h0;
     break;
   case VG_TABLE_SWEEP:
     memcpy(&s->sweep, row, sizeof s->sweep);
@@ -576,6 +561,7 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
   }
   return refused ? vg_fail_memory(err, "the settings") : VG_OK;
 }
+#undef APPEND
 
 const void *vg_settings_row(const struct vg_settings *s,
                             enum vg_table_kind kind, size_t i)
@@ -589,6 +575,7 @@ const void *vg_settings_row(const struct vg_settings *s,
   if (kind == VG_TABLE_SURFACE) return &s->surface_row[i];
   if (kind == VG_TABLE_WAKES) return &s->wake_row[i];
   if (kind == VG_TABLE_ZONES) return &s->zone[i];
+  if (kind == VG_TABLE_PERIODIC) return &s->periodic_row[i];
   return &s->source[i];
 }
 
@@ -602,6 +589,7 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   if (kind == VG_TABLE_SURFACE) return s->n_surface;
   if (kind == VG_TABLE_WAKES) return s->n_wake;
   if (kind == VG_TABLE_ZONES) return s->n_zone;
+  if (kind == VG_TABLE_PERIODIC) return s->n_periodic;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 

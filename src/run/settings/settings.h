@@ -101,6 +101,22 @@ struct vg_wake_row {
   char alpha[VG_LIST_MAX], beta[VG_LIST_MAX]; /* lists of angles in degrees */
 };
 
+/** Transform of a pair of periodic patches. */
+enum vg_periodic_kind {
+  VG_PERIODIC_AUTO,
+  VG_PERIODIC_TRANSLATION,
+  VG_PERIODIC_ROTATION
+};
+
+/** A pair of periodic patches (core/periodic/periodic.h). NAN: not given. */
+struct vg_periodic_row {
+  int32_t patch, image;
+  int kind; /* enum vg_periodic_kind */
+  double t[3], angle, centre[3], axis[3];
+  char patch_name[VG_NAME_MAX], image_name[VG_NAME_MAX]; /* as in
+                                                            vg_surface_row */
+};
+
 /** A yes/no setting that the run may decide itself. */
 enum vg_answer { VG_ANSWER_AUTO, VG_ANSWER_NO, VG_ANSWER_YES };
 
@@ -196,12 +212,14 @@ struct vg_settings {
   size_t n_sweep, n_adapt; /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
   size_t n_surface, cap_surface, n_wake, cap_wake, n_zone, cap_zone;
-  struct vg_source *source;           /* [n_source] owned */
-  struct vg_patch_row *patch;         /* [n_patch] owned */
-  struct vg_layer_row *layer_row;     /* [n_layer] owned */
-  struct vg_surface_row *surface_row; /* [n_surface] owned */
-  struct vg_wake_row *wake_row;       /* [n_wake] owned */
-  struct vg_zone_row *zone;           /* [n_zone] owned */
+  size_t n_periodic, cap_periodic;
+  struct vg_source *source;             /* [n_source] owned */
+  struct vg_patch_row *patch;           /* [n_patch] owned */
+  struct vg_layer_row *layer_row;       /* [n_layer] owned */
+  struct vg_surface_row *surface_row;   /* [n_surface] owned */
+  struct vg_wake_row *wake_row;         /* [n_wake] owned */
+  struct vg_zone_row *zone;             /* [n_zone] owned */
+  struct vg_periodic_row *periodic_row; /* [n_periodic] owned */
 };
 #define VG_SETTINGS_INIT                                                       \
   {                                                                            \
@@ -297,6 +315,7 @@ enum vg_table_kind {
   VG_TABLE_SURFACE,
   VG_TABLE_WAKES,
   VG_TABLE_ZONES,
+  VG_TABLE_PERIODIC,
   VG_TABLE_SOURCES,
   VG_TABLE_SWEEP,
   VG_TABLE_ADAPT,

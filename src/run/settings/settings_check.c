@@ -10,6 +10,7 @@
 #include "layers/columns/growth_law.h"
 #include "run/settings/settings.h"
 #include "run/settings/surface_table.h"
+#include "run/settings/periodic_table.h"
 #include "run/settings/wake_table.h"
 
 /* The word for the kind of the farfield, the first column of its table. */
@@ -258,6 +259,7 @@ static vg_status check(const struct vg_settings *s, struct vg_error *err)
   if (check_sources(s, err) < 0) return VG_ERR_INPUT;
   if (vg_surface_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (vg_wake_rows_check(s, err) < 0) return VG_ERR_INPUT;
+  if (vg_periodic_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
     return VG_ERR_INPUT;
   return check_layers(s, err);

@@ -478,6 +478,8 @@ static vg_status write_whole(struct writing *w, const char *item,
     VG_TRY(
       vg_slices_gather(w->comm, w->mesh, w->threads, &w->whole, &w->part, err));
   w->is_whole = 1;
+  options.n_periodic = w->p->boundary.pairs.n;
+  options.periodic = w->p->boundary.pairs.pair;
   if (!w->o->is_guest)
     st = is_foam ? write_foam(w, path, &options, err)
                  : write_format(w, path, item, err);

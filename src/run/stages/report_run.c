@@ -84,6 +84,13 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
   json_object_set_new(o, "mesh", vg_report_mesh_json(&r->run->judge, m));
   if (p->read.is_section)
     json_object_set_new(o, "plane", vg_report_plane_json(&r->run->plane));
+  if (p->boundary.pairs.n) {
+    json_object_set_new(o, "periodic",
+                        vg_report_periodic_json(p->boundary.pairs.n,
+                                                p->boundary.pairs.pair));
+    json_object_set_new(o, "periodic_distance",
+                        json_real(r->run->periodic_distance));
+  }
   if (r->run->sheets)
     json_object_set_new(o, "sheets",
                         vg_report_sheets_json(r->run->slices.boundary,
@@ -275,6 +282,9 @@ void vg_run_report_text(FILE *to, const struct vg_run_report *r)
   vg_report_sheets_text(to, m->slices.boundary, m->sheets);
   vg_report_wakes_text(to, &r->problem->read.wakes, m->n_probe, m->probe);
   vg_report_zones_text(to, m->slices.boundary, m->zone_report);
+  vg_report_periodic_text(to, r->problem->boundary.pairs.n,
+                          r->problem->boundary.pairs.pair,
+                          m->periodic_distance);
   if (m->parts) {
     fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);

@@ -491,6 +491,7 @@ vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st;
 
+  VG_TRY(vg_run_verify_periodic(r, p, err));
   vg_display_update(show, "mesh check", vg_run_cells(r), 0);
   VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->boundary.surface,
                               layers ? &layers->columns : NULL, err));
@@ -682,6 +683,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
   front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
   VG_TRY(vg_run_agree(r->comm, &p->boundary.surface, &layers->layers, sizing,
                       r->options.change, err));
+  VG_TRY(vg_run_verify_front(r, p, &front, err));
   VG_TRY(find_ineffective_sources(r, p, &front, sizing, err));
   VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
   VG_TRY(stop_here(r, show, err));

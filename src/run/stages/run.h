@@ -87,6 +87,7 @@ struct vg_run {
   struct vg_slices unsorted;      /* The mesh before its cells were sorted by
                                      zones, if it has zones. */
   struct vg_zone_slices *zones;
+  double periodic_distance; /* Largest distance between periodic points. */
   struct vg_zone_report *zone_report; /* [n_zone] figures of the zones. */
   struct vg_slices parted; /* With solver partitions, if requested. */
   struct vg_solver_slices *parts;
@@ -133,6 +134,18 @@ vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
 
 /** The mesh as it is written. */
 const struct vg_slices *vg_run_slices(const struct vg_run *r);
+
+/** run/stages/run_periodic.c: checks the periodic patches above the layers,
+ * before the fill. Collective. VG_ERR_GEOMETRY as below. */
+vg_status vg_run_verify_front(const struct vg_run *r,
+                              const struct vg_problem *p,
+                              const struct vg_mesh *front,
+                              struct vg_error *err);
+
+/** run/stages/run_periodic.c: checks the periodic patches of r->slices.
+ * Collective. VG_ERR_GEOMETRY if they are not images of each other. */
+vg_status vg_run_verify_periodic(struct vg_run *r, const struct vg_problem *p,
+                                 struct vg_error *err);
 
 /** run/stages/run_zones.c: sorts the cells of r->slices by zones, if the
  * surface has interfaces. Collective. */

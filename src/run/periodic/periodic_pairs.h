@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* run/periodic/periodic_pairs.h: periodic patches of the table `periodic`. */
+#ifndef VG_RUN_PERIODIC_PERIODIC_PAIRS_H
+#define VG_RUN_PERIODIC_PERIODIC_PAIRS_H
+
+#include "core/periodic/periodic.h"
+#include "run/settings/settings.h"
+
+struct vg_pairs {
+  size_t n;
+  struct vg_periodic *pair; /* [n] owned */
+};
+#define VG_PAIRS_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  } /* releasing this is a no-op */
+
+void vg_pairs_release(struct vg_pairs *list);
+
+/** Finds or checks the transforms of all rows of s on the closed surface m, and
+ * moves the points of each second patch to the images of those of the first.
+ *
+ * @param list     replaced
+ * @param n_moved  out: points that moved
+ *
+ * VG_ERR_INPUT for patches that the surface does not have, or that are named
+ * twice. VG_ERR_GEOMETRY for patches that do not match: the message has the
+ * largest distance and its place. */
+vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
+                          struct vg_pairs *list, size_t *n_moved,
+                          struct vg_error *err);
+
+/** Whether the patch with this number is in a pair. */
+int vg_pairs_have(const struct vg_pairs *list, int32_t id);
+
+/* S103: largest distance between a point and its image in a finished mesh,
+ * as a share of the extent of the pair. */
+#define VG_PERIODIC_EXACT 1e-10
+
+/** Checks the pairs on the boundary m of a mesh, with its points.
+ *
+ * @param remedy    end of the message
+ * @param distance  out: the largest distance over all pairs
+ *
+ * VG_ERR_GEOMETRY if points or faces have no partner. */
+vg_status vg_pairs_verify(const struct vg_pairs *list, const struct vg_mesh *m,
+                          const char *remedy, double *distance,
+                          struct vg_error *err);
+
+#endif

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Periodic patches: a box with two pairs, sectors of a ring and of a disk.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 \
+  OMPI_MCA_hwloc_base_binding_policy=none \
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
+  PRTE_MCA_hwloc_default_binding_policy=none
+
+# shellcheck source=tests/cli/duct.bash
+. "$here/duct.bash"
+
+# sector NAME N R: the part between the radii R and 1 of a disk, 1/N of a turn,
+# with coordinates of seven digits.
+sector() {
+  awk -v n="$2" -v r0="$3" '
+    function vertex(i, j, k,  r, t) {
+      r = r0 + (1 - r0) * i / 6
+      t = 2 * atan2(0, -1) / n * j / 8
+      printf "vertex %.7g %.7g %.7g\n", r * cos(t), r * sin(t), k / 8
+    }
+    function corner(d, e, u, v) {
+      if (d == 1) vertex(u, e * 8, v)
+      if (d == 2) vertex(e * 6, u, v)
+      if (d == 3) vertex(u, v, e * 4)
+    }
+    function facet(d, e, a, b, c, f, g, h) {
+      print "facet normal 0 0 0\nouter loop"
+      corner(d, e, a, b); corner(d, e, c, f); corner(d, e, g, h)
+      print "endloop\nendfacet"
+    }
+    function side(name, d, e,  u, v, nu, nv) {
+      nu = d == 2 ? 8 : 6
+      nv = d == 3 ? 8 : 4
+      print "solid " name
+      for (u = 0; u < nu; u++) for (v = 0; v < nv; v++) {
+        facet(d, e, u, v, u + 1, v, u + 1, v + 1)
+        facet(d, e, u, v, u + 1, v + 1, u, v + 1)
+      }
+      print "endsolid " name
+    }
+    BEGIN {
+      side("lo", 1, 0); side("hi", 1, 1)
+      if (r0 > 0) side("in", 2, 0)
+      side("out", 2, 1); side("bot", 3, 0); side("top", 3, 1)
+    }' </dev/null >"$1.stl"
+}
+
+# deck NAME LINE...: a deck with the table.
+deck() {
+  local name=$1
+  shift
+  { printf 'p\n\nperiodic\n'; printf '%s\n' "$@"; } >"$name.deck"
+}
+
+# report NAME EXPRESSION: a value of the JSON report is as the jq expression says.
+report() {
+  if command -v jq >/dev/null; then
+    jq -e "$2" "o_$1/$1.report.json" >out || fail "$1: $2: $(cat out)"
+  fi
+}
+
+duct box
+deck box "patch image" "w1 w2" "w3 w4"
+valid box
+report box '.periodic | length == 2 and .[0].translation == [0, 0, 1] and
+  .[0].triangles == 128 and .[0].moved == 0 and .[1].translation == [0, 1, 0]'
+report box '.periodic_distance == 0'
+
+sector ring 7 0.3
+deck ring "patch image" "lo hi"
+valid ring
+report ring '.periodic[0] | .kind == "rotation" and .turns_per_circle == 7 and
+  .axis == [0, 0, 1] and .moved > 0 and .moved < 1e-6'
+report ring '.periodic_distance == 0'
+cp ring.stl given.stl
+deck given "patch image angle ux uy uz" "hi lo -51.4286 0 0 2"
+valid given
+report given '.periodic[0] | .angle == -360 / 7 and .centre == [0, 0, 0]'
+
+# Points on the axis are their own images.
+sector disk 5 0
+deck disk "patch image" "lo hi"
+valid disk
+report disk '.periodic[0].turns_per_circle == 5'
+vanguard mesh disk.stl --flow internal --hmax 0.12 --out text
+exits 0
+says out "1 to 2: rotation by 72 degrees (360/5) about (0, 0, 1) through (0, 0, 0)"
+says out "distance in the mesh: at most 0"
+
+# The same faces for other threads and ranks, and from the resolved deck.
+for threads in 1 3; do
+  vanguard mesh ring.stl --flow internal --quiet --hmax 0.08 --leaf-cells 2000 \
+    --threads $threads --write b8.ugrid,foam-ascii --out t$threads
+  exits 0
+done
+vanguard mesh ring.stl --deck t1/ring.resolved.deck --quiet \
+  --write b8.ugrid,foam-ascii --out again
+exits 0
+boundary=ring.openfoam/constant/polyMesh
+for other in t3 again; do
+  same t1/ring.b8.ugrid $other/ring.b8.ugrid
+  for file in points faces boundary; do
+    same t1/$boundary/$file $other/$boundary/$file
+  done
+done
+if mpirun -n 2 true >/dev/null 2>&1; then
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh \
+    ring.stl --flow internal --quiet --hmax 0.08 --leaf-cells 2000 --threads 1 \
+    --write b8.ugrid,foam-ascii --out ranks >out 2>err ||
+    fail "two ranks: $(cat err)"
+  same t1/ring.b8.ugrid ranks/ring.b8.ugrid
+  same t1/$boundary/faces ranks/$boundary/faces
+else echo "mpirun is not installed: the ranks are omitted"; fi
+
+# --- OpenFOAM ------------------------------------------------------------------
+
+grep -A5 '^    hi$' t1/$boundary/boundary >out
+says out "type            cyclic;"
+says out "neighbourPatch  lo;"
+says out "transform       rotational;"
+vanguard mesh box.stl --flow internal --quiet --hmax 0.12 --write foam --out fbox
+exits 0
+grep -A5 '^    w2$' fbox/box.openfoam/constant/polyMesh/boundary >out
+says out "separationVector (0 0 -1);"
+
+if command -v checkMesh >/dev/null; then
+  foam() {
+    # shellcheck disable=SC1090
+    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
+  }
+  set +u
+  [ -n "${WM_PROJECT_DIR:-}" ] || foam
+  set -u
+  for case in fbox/box t1/ring; do
+    (cd $case.openfoam && checkMesh -allTopology) >out 2>err
+    says out "Coupled point location match"
+    says out "Mesh OK."
+  done
+else echo "OpenFOAM is not installed: checkMesh is omitted"; fi
+
+# --- errors --------------------------------------------------------------------
+
+# refused TEXT OPTION...: meshing box with err.deck fails with the text.
+refused() {
+  local text=$1
+  shift
+  vanguard mesh box.stl --deck err.deck --flow internal --out refused "$@"
+  exits 1
+  says err "$text"
+  [ ! -e refused/box.b8.ugrid ] || fail "a mesh was written"
+}
+# table TEXT LINE LINE...
+table() {
+  local text=$1
+  shift
+  deck err "$@"
+  refused "$text"
+}
+table "patch 1 is paired with itself" "patch image" "w1 1"
+table "no patch of the surface is named 'nix'" "patch image" "w1 nix"
+table "line 2: patch 2 is in an earlier line" "patch image" "w1 w2" "w2 w3"
+table "'w*' matches patches 1 w1 and 2 w2" "patch image" "w* w3"
+table "81 of 81 points have no partner" "patch image tx ty tz" "w1 w2 0 0 1.01"
+table "largest distance is 0.01, at (0, 0, 0)" "patch image tx ty tz" \
+  "w1 w2 0 0 1.01"
+table "tx, ty and tz must be given together" "patch image tx ty" "w1 w2 0 0"
+table "needs angle and ux, uy, uz" "patch image angle" "w1 w2 90"
+table "no rotation takes patches 1 (w1) and 2 (w2)" "patch image kind" \
+  "w1 w2 rotation"
+deck err "patch image" "w1 w2"
+refused "the surface is remeshed" --remesh-surface yes
+refused "wrap is given" --wrap 0.1
+refused "surface_swap is yes" --surface-swap yes
+refused "baffles, sheets or interfaces are given" --sheets w5
+refused "patch 1 w1 is periodic, but layers" --walls w1,w5 --first 0.01
+# Columns that slide in the patches change them in different ways.
+refused "the layers changed them" --walls w5,w6 --first 0.004
+
+# Other diagonals, and other numbers of triangles.
+duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"
+sed -i '/^solid w2$/,/^endsolid w2$/d' box.stl
+table "128 of 128 faces have no partner" "patch image" "w1 w7"
+cp ring.stl box.stl
+table "differ: 48 and 64 faces" "patch image tx ty tz" "lo out 1 0 0"
