@@ -91,18 +91,73 @@ static json_t *settings_json(const struct vg_adapt_options *o,
                    extra);
 }
 
-static vg_status check_row(const struct vg_adapt_row *r, struct vg_error *err)
+/* As vanguard metric checks its options, but before the first mesh. */
+static vg_status check_metric(const struct vg_adapt_row *r,
+                              struct vg_error *err)
 {
-  if (!*r->solver)
+  const struct {
+    const char *name;
+    double value, least;
+  } bound[] = {
+    { "cells", r->cells, 0 },   { "cells_ratio", r->cells_ratio, 0 },
+    { "growth", r->growth, 1 }, { "aspect_max", r->aspect_max, 1 },
+    { "h_min", r->h_min, 0 },   { "h_max", r->h_max, 0 }
+  };
+  int64_t norm = 0;
+
+  if (*r->norm && strcmp(r->norm, "max") &&
+      (!vg_parse_int(r->norm, strlen(r->norm), &norm) || norm < 1 || norm > 16))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "adapt: norm '%s' is neither a number from 1 to 16 nor "
+                   "'max'",
+                   r->norm);
+  for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
+    if (bound[i].value <= bound[i].least) /* false for NAN: not given */
+      return vg_fail(err, VG_ERR_INPUT, "adapt: %s %g must be above %g",
+                     bound[i].name, bound[i].value, bound[i].least);
+  if (r->h_min >= r->h_max)
+    return vg_fail(err, VG_ERR_INPUT, "adapt: h_min %g must be below h_max %g",
+                   r->h_min, r->h_max);
+  return VG_OK;
+}
+
+/* Options after '--' that the loop sets itself. */
+static const char *const own_options[] = {
+  "-p",    "--project", "-d",        "--deck",   "-o",
+  "--out", "--sizes",   "--run-dir", "--resume", "--first-from"
+};
+
+static vg_status check_extra(const struct vg_adapt_options *o,
+                             struct vg_error *err)
+{
+  for (int i = 0; i < o->n_extra; i++)
+    for (size_t k = 0; k < sizeof own_options / sizeof *own_options; k++) {
+      const size_t n = strlen(own_options[k]);
+
+      if (strncmp(o->extra[i], own_options[k], n) != 0 ||
+          (o->extra[i][n] && o->extra[i][n] != '='))
+        continue;
+      return vg_fail(err, VG_ERR_USAGE,
+                     "%s after '--' would override what the loop sets; give "
+                     "it before '--' if it is an option of vanguard adapt",
+                     own_options[k]);
+    }
+  return VG_OK;
+}
+
+static vg_status check_options(const struct vg_adapt_options *o,
+                               struct vg_error *err)
+{
+  vg_status st;
+
+  if (!*o->row.solver)
     return vg_fail(err, VG_ERR_INPUT,
                    "no solver: give the program by --solver or in the table "
                    "adapt of the deck");
-  if (r->cells < 1 || r->cells_ratio <= 0)
-    return vg_fail(err, VG_ERR_INPUT,
-                   "adapt: cells %g and cells_ratio %g must be at least 1 and "
-                   "above 0",
-                   r->cells, r->cells_ratio);
-  return VG_OK;
+  VG_TRY(check_metric(&o->row, err));
+  st = check_extra(o, err);
+done:
+  return st;
 }
 
 /* --- the record ----------------------------------------------------------- */
@@ -181,11 +236,12 @@ static void take_outputs(const json_t *o, struct vg_adapt_cycle *c)
   }
 }
 
-/* Steps count up to the first one that is not done. */
+/* Steps count up to the first one that is not done. A folder that was removed
+ * has none. */
 static int take_cycle(const json_t *o, struct vg_adapt_cycle *c)
 {
   const json_t *steps = json_object_get(o, "seconds");
-  int goes_on = json_is_object(o);
+  int goes_on = json_is_object(o) && !access(c->dir, F_OK);
 
   for (int k = 0; k < VG_ADAPT_N; k++) {
     const double s = c->is_done[k] ? 0 : number_at(steps, step_names[k]);
@@ -224,6 +280,14 @@ static const char *changed(const json_t *now, const json_t *then)
   return NULL;
 }
 
+/* A digest belongs to a file. */
+static const char *words_of(const char *name)
+{
+  return !strcmp(name, "deck_digest")    ? "deck"
+       : !strcmp(name, "surface_digest") ? "surface"
+                                         : name;
+}
+
 static vg_status take_record(struct vg_adapt *a, struct vg_error *err)
 {
   char *path = NULL;
@@ -248,7 +312,7 @@ static vg_status take_record(struct vg_adapt *a, struct vg_error *err)
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s is the record of a loop with another %s; give another "
                  "folder by --out, or remove this one",
-                 path, other);
+                 path, words_of(other));
   for (size_t i = 0; i < a->n && st >= 0; i++)
     if (!take_cycle(json_array_get(json_object_get(o, "cycles"), i),
                     &a->cycle[i]))
@@ -313,9 +377,16 @@ static vg_status find_stem(struct vg_adapt *a, char **surface,
     const struct vg_input_files *f = &p.read.files;
     const char *slash = strrchr(f->stem, '/');
 
+    if (*a->o->row.field && f->surface && vg_text_ends(f->surface, ".dat"))
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "%s is a plane section, on which metrics do not act: leave "
+                   "out the field, so that only first heights follow the "
+                   "solution",
+                   f->surface);
     a->stem = strdup(slash ? slash + 1 : f->stem);
     *surface = strdup(f->surface ? f->surface : f->front ? f->front : f->d3m);
-    if (!a->stem || !*surface) st = vg_fail_memory(err, "a file name");
+    if (st >= 0 && (!a->stem || !*surface))
+      st = vg_fail_memory(err, "a file name");
   }
   vg_problem_release(&p);
   return st;
@@ -328,7 +399,7 @@ vg_status vg_adapt_open(const struct vg_adapt_options *o, struct vg_adapt *a,
   vg_status st;
 
   *a = (struct vg_adapt){ .o = o };
-  VG_TRY(check_row(&o->row, err));
+  VG_TRY(check_options(o, err));
   VG_TRY(find_stem(a, &surface, err));
   VG_TRY(vg_make_folder(o->dir, err));
   VG_TRY(absolute(o->dir, &a->dir, err));

@@ -155,7 +155,7 @@ static vg_status metric_line(const struct vg_adapt *a,
   if (!solution)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the solution of this cycle is gone; remove the folder "
-                   "and its entry in adapt.json to compute it again",
+                   "to compute it again",
                    from->dir);
   vg_adapt_attempt(r, c->attempt, &growth, &aspect_max);
   metric_name(c->attempt, name);

@@ -137,6 +137,33 @@ says err "the solver left no solution.vtu"
 vanguard adapt -p box.lb8.ugrid -o e --solver ./none --field q
 exits 1
 says err "cannot start ./none"
+for wrong in "--norm 0" "--norm 17" "--aspect-max 0.5" "--metric-growth 0.9" \
+    "--h-min 1 --h-max 0.1" "--cells 0"; do
+  # shellcheck disable=SC2086 # options are words
+  vanguard adapt box.deck -o w $wrong
+  exits 1
+  says err "adapt: "
+  absent w
+done
+vanguard adapt box.deck -o w -- --out x
+exits 2
+says err "--out after '--' would override"
+
+# The folder of a cycle is repeated with all later ones.
+rm -r a/cycle-2
+vanguard adapt box.deck -o a --cycles 3
+exits 0
+lacks err "cycle 1"
+says err "cycle 3 of 3: solver"
+for i in 1 2 3; do same "a/cycle-$i/box.b8.ugrid" "b/cycle-$i/box.b8.ugrid"; done
+cp box.deck other.deck
+echo >>other.deck
+vanguard adapt -p box.lb8.ugrid -d other.deck -o a
+exits 1
+vanguard demo aerofoil --out s2
+vanguard adapt -p s2/aerofoil.dat --solver true --field p -o w
+exits 1
+says err "is a plane section, on which metrics do not act"
 vanguard adapt box.deck -o d --cycles 0.5
 exits 2
 vanguard adapt
