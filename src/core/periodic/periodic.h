@@ -39,8 +39,8 @@ void vg_periodic_turn(struct vg_periodic *p, double degrees);
 /** Finds the transform from the areas and centroids of the patches of p: a
  * translation if their mean normals are opposite, else a rotation. Coordinates
  * of axis and centre below VG_PERIODIC_ZERO (relative) become 0. The transform
- * is a guess until vg_periodic_match succeeds. Returns 0 if there is none.
- * O(n). */
+ * is a guess until vg_periodic_match succeeds. Returns 0 if no transform is
+ * found. O(n). */
 int vg_periodic_find(const struct vg_mesh *m, struct vg_periodic *p);
 
 #define VG_PERIODIC_NONE UINT32_MAX
