@@ -14,6 +14,8 @@
 
 #define FAN_ANGLE 60.0 /* S96: sharp and blunt trailing edges */
 #define SIZE 0.02      /* S96: largest edge over the length of the section */
+#define COARSE 1.05    /* 60 degrees: smooth points are reported */
+#define DEGREES 57.29577951308232
 
 void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
 {
@@ -118,6 +120,13 @@ static void note_found(const struct vg_boundary *b,
             "corners, %zu edges",
             b->surface.patch[i].name, f->chord, f->start[0], f->start[1], edge,
             f->n_corner, f->n_edge);
+    if (f->turn > COARSE)
+      vg_note(b->notes,
+              "section %s: the curve is smooth at (%.6g, %.6g), where the "
+              "points turn by %.0f degrees; if that is a corner, add a point "
+              "in the middle of both sides, otherwise more points along the "
+              "curve",
+              b->surface.patch[i].name, f->at[0], f->at[1], f->turn * DEGREES);
   }
 }
 
@@ -176,6 +185,23 @@ static struct vg_section_outer outer_of(const struct vg_boundary *b,
   return o;
 }
 
+/* Points that extend the box of the view to the outer boundary, so that sources
+ * and maps of sizes count in the whole plane. */
+static void reach_outer(struct vg_mesh *view,
+                        const struct vg_section_outer *outer)
+{
+  double *lo = view->point[view->n_point++];
+  double *hi = view->point[view->n_point++];
+
+  for (int k = 0; k < 2; k++) {
+    const double c = outer->centre[k], r = outer->radius;
+
+    lo[k] = outer->is_box ? outer->lo[k] : c - r;
+    hi[k] = outer->is_box ? outer->hi[k] : c + r;
+  }
+  lo[2] = hi[2] = 0;
+}
+
 struct edges {
   const struct vg_sizing *sizing;
   double most;
@@ -204,6 +230,7 @@ vg_status vg_boundary_close_section(struct vg_boundary *b,
 
   vg_display_update(show, "farfield", 0, 0);
   VG_TRY(vg_section_sizes(&b->surface, &view, err));
+  reach_outer(&view, &outer);
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
   VG_TRY(

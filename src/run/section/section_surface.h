@@ -38,6 +38,8 @@ struct vg_section_found {
                          smooth. */
   double start[2];    /* First point. */
   int is_corner;      /* 1: the first point is a corner. */
+  double turn, at[2]; /* Largest turn at a smooth point, in radians; and where.
+                       */
 };
 
 /** Replaces the points of a strip by those of the curves through them with the
@@ -74,7 +76,8 @@ vg_status vg_section_close(struct vg_mesh *strip,
 
 /** Triangles that request the edge lengths of walls and farfield in a sizing
  * field: an equilateral one on each edge in the plane z = 0. *out has points,
- * tri, tri_patch of its own; its patches are those of the surface, borrowed.
+ * tri, tri_patch of its own, with room for two more points; its patches are
+ * those of the surface, borrowed.
  * VG_ERR_MEMORY. */
 vg_status vg_section_sizes(const struct vg_mesh *surface, struct vg_mesh *out,
                            struct vg_error *err);
