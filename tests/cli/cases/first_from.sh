@@ -128,6 +128,12 @@ refused() {
   absent no
 }
 refused nowhere.vtu "nowhere.vtu"
+for unit in 1000 0.001; do
+  awk -v unit=$unit '/Name=/ { on = /NumberOfComponents="3"/ && !/Name="cf"/ }
+       on && NF == 3 && !/</ { $1 *= unit; $2 *= unit; $3 *= unit } 1' s.vtu \
+    >unit.vtu
+  refused unit.vtu "points of walls are near a wall of unit.vtu, less than half"
+done
 refused empty "there is no .vtu or .vtp in the folder empty"
 refused s.csv "neither a .vtu nor a .vtp"
 refused s.vtu "first and first_from are both given" --first 1e-5
@@ -150,7 +156,7 @@ refused bad.vtu "value 1 of 5801 is not a number"
 first_from write wing.lb8.ugrid bad.vtu 1 cf "(1, 2, 3, 4)"
 refused bad.vtu "has 4 components"
 first_from write wing.lb8.ugrid bad.vtu 4 cf "1"
-refused bad.vtu "no wall is near a wall of bad.vtu"
+refused bad.vtu "points of walls are near a wall of bad.vtu, less than half"
 sed 's/PointData/CellData/' s.vtu >bad.vtu
 refused bad.vtu "'cf' has values in the cells" --first-field cf
 {
