@@ -17,6 +17,8 @@
 #define COARSE 1.05    /* 60 degrees: smooth points are reported */
 #define DEGREES 57.29577951308232
 
+enum { EDGES_MIN = 3 };
+
 void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
 {
   if (!read->is_section) return;
@@ -130,6 +132,31 @@ static void note_found(const struct vg_boundary *b,
   }
 }
 
+/* Requests that the sections found cannot meet. */
+static vg_status check_found(const struct vg_boundary *b,
+                             const struct vg_section_found *found,
+                             struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const size_t n = b->surface.n_patch;
+  double base = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    base = fmax(base, found[i].base);
+    if (found[i].n_edge >= EDGES_MIN) continue;
+    return vg_fail(err, VG_ERR_INPUT,
+                   "section %s of chord %g would have only %zu edges with the "
+                   "scale %g; reduce scale or surface_size, or raise "
+                   "edges_per_turn",
+                   b->surface.patch[i].name, found[i].chord, found[i].n_edge,
+                   s->scale);
+  }
+  if (s->tail_cells && !(base > 0))
+    vg_note(b->notes,
+            "te_cells has no effect: no section has a blunt trailing edge");
+  return VG_OK;
+}
+
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
                                      struct vg_error *err)
 {
@@ -161,6 +188,7 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
   b->flow.axis = -1;
   st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
   if (st >= 0) note_found(b, found);
+  if (st >= 0) st = check_found(b, found, err);
   free(found);
   return st;
 }
