@@ -12,9 +12,11 @@
 #include "run/section/section_surface.h"
 #include "run/settings/plan_options.h"
 
-#define FAN_ANGLE 60.0 /* S96: sharp and blunt trailing edges */
-#define SIZE 0.02      /* S96: largest edge over the length of the section */
-#define COARSE 1.05    /* 60 degrees: smooth points are reported */
+#define FAN_ANGLE 60.0  /* S96: sharp and blunt trailing edges */
+#define SIZE 0.02       /* S96: largest edge over the length of the section */
+#define SLOT_NOTE 0.5   /* S96: width of a slot over the edge there: noted, */
+#define SLOT_LEAST 0.02 /* and refused */
+#define COARSE 1.05     /* 60 degrees: smooth points are reported */
 #define DEGREES 57.29577951308232
 
 enum { EDGES_MIN = 3 };
@@ -157,6 +159,31 @@ static vg_status check_found(const struct vg_boundary *b,
   return VG_OK;
 }
 
+/* A slot far narrower than its edges has flat triangles. */
+static vg_status check_slot(const struct vg_boundary *b, struct vg_error *err)
+{
+  const struct vg_patch *patch = b->surface.patch;
+  struct vg_section_slot slot;
+  vg_status st = vg_section_slot_find(&b->surface, &slot, err);
+
+  if (st < 0 || slot.width >= SLOT_NOTE * slot.edge) return st;
+  if (slot.width < SLOT_LEAST * slot.edge)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the slot between section %s and section %s at (%.6g, %.6g) "
+                   "is only %.3g wide, and the edges there are %.3g long; move "
+                   "the sections apart, unite them, or request edges of that "
+                   "width by a source",
+                   patch[slot.patch[0]].name, patch[slot.patch[1]].name,
+                   slot.at[0], slot.at[1], slot.width, slot.edge);
+  vg_note(b->notes,
+          "the slot between section %s and section %s at (%.6g, %.6g) is only "
+          "%.3g wide, and the edges there are %.3g long; request shorter ones "
+          "by a source",
+          patch[slot.patch[0]].name, patch[slot.patch[1]].name, slot.at[0],
+          slot.at[1], slot.width, slot.edge);
+  return VG_OK;
+}
+
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
                                      struct vg_error *err)
 {
@@ -189,6 +216,7 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
   st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
   if (st >= 0) note_found(b, found);
   if (st >= 0) st = check_found(b, found, err);
+  if (st >= 0) st = check_slot(b, err);
   free(found);
   return st;
 }

@@ -109,8 +109,8 @@ awk '/^NPOIN/ { n = $2; i = 0; next } n > i { x[i] = $1; y[i++] = $2; next }
      /MARKER_TAG/ { on = $2 == "plate" }
      on && NF == 3 { area += x[$2] * y[$3] - x[$3] * y[$2] }
      END { area /= 2; area = area < 0 ? -area : area
-           exit !(area > 0.002 - 1e-9 && area < 0.002 + 1e-9) }' plate/plate.su2 ||
-  fail "the plate has another area"
+           exit !(area > 0.002 - 1e-9 && area < 0.002 + 1e-9) }' \
+  plate/plate.su2 || fail "the plate has another area"
 
 # The wake follows the angle of attack in the plane: points are near the line at
 # 8 degrees, and fewer are near that at -8 degrees.
@@ -133,6 +133,20 @@ exits 1
 says err "beta turns the stream out of this plane"
 
 # Refusals leave nothing behind.
+for gap in 0.000001 0.01; do
+  awk -v gap=$gap '/^flap/ { on = 1 }
+    on && NF == 2 { printf "%.9f %.9f\n", $1 + gap - 0.1, $2 + 0.08; next }
+    1' two.dat >near.dat
+  vanguard mesh -q -p near.dat --layers no --out n
+  if [ $gap = 0.01 ]; then exits 0; else
+    exits 1
+    says err "the slot between section main and section flap at"
+  fi
+done
+vanguard mesh -q -p d/aerofoil.dat --layers no --scale 50 --le-spacing 0 \
+  --te-spacing 0 --edges-per-turn 5 --out m
+exits 1
+says err "edges with the scale 50; reduce scale"
 vanguard mesh -q -p d/aerofoil --max-cells 2000 --out m
 exits 1
 says err "are allowed (max_cells)"
