@@ -59,7 +59,8 @@ static void reads_both_orders(void **state)
     /* Lednicer. */
     "Kite\n3. 3.\n\n0 0\n0.5 0.1\n1 0\n\n0 0\n0.5 -0.1\n1 0\n",
     "Kite\r\n  3  3\r\n0 0\r\n.5 1D-1\r\n1 0\r\n0 0\r\n.5 -.1\r\n1. 0.",
-    "# comment\n\nKite\n999 999\n1 0 # edge\n# another\n0.5 0.1\n0 0\n0.5 -0.1\n1 0"
+    "# comment\n\nKite\n999 999\n1 0 # edge\n# another\n0.5 0.1\n0 0\n"
+    "0.5 -0.1\n1 0"
   };
 
   (void)state;

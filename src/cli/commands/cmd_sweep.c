@@ -9,7 +9,6 @@
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
 #include "cli/sweep/sweep.h"
-#include "io/section/section.h"
 #include "io/stream/stream.h"
 #include "run/common/folder.h"
 #include "run/common/progress.h"
@@ -174,7 +173,7 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   vg_settings_default(&p.asked);
   if (vg_input_find(o->project, NULL, &p.read.files, NULL) >= 0) {
     if (!deck) deck = p.read.files.deck;
-    o->is_plane = vg_section_is(p.read.files.surface);
+    o->is_plane = p.read.files.is_section;
   }
   if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
   if (st >= 0 && vg_settings_unit(&p.asked))
