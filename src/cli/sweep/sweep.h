@@ -41,8 +41,8 @@ struct vg_sweep_options {
   double reynolds, length;      /* of the deck, for a workshop's family */
   int sets_farfield;            /* 1: the deck does not exclude a farfield made
                                    by the program */
-  int is_plane;                 /* 1: the project is a plane section */
   int repeat, keep, json, quiet;
+  int is_plane; /* 1: the project is a plane section */
   int n_extra;
   char **extra; /* [n_extra] for vanguard mesh */
 };
