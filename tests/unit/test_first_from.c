@@ -323,6 +323,37 @@ static void refuses_walls_elsewhere(void **unused)
   close_scene(&c);
 }
 
+static double constant(const double x[3])
+{
+  (void)x;
+  return 0.003;
+}
+
+/* Spheres in other units touch the walls at one place; they are not theirs. */
+static void refuses_other_units(void **unused)
+{
+  static const double unit[] = { 1000, 10, 2, 0.1, 0.001 };
+  const char *path = VG_TMP_DIR "/first_unit.vtu";
+  const double one[3] = { 1, 1, 1 };
+
+  (void)unused;
+  for (size_t i = 0; i < sizeof unit / sizeof *unit; i++) {
+    const double r[3] = { unit[i], unit[i], unit[i] };
+    struct vg_mesh old = VG_MESH_INIT;
+    struct scene c = { .h = { 0, NULL } };
+    struct vg_error err = VG_ERROR_INIT;
+
+    shape_ball(&old, r, 8);
+    write_solution(path, &old, constant, 0, unit[i] - 1);
+    shape_ball(&c.b.surface, one, 8);
+    open_scene(&c, path);
+    assert_int_equal(vg_first_from(&c.s, &c.b, &c.h, &err), VG_ERR_INPUT);
+    assert_non_null(strstr(err.text, "less than half"));
+    vg_mesh_release(&old);
+    close_scene(&c);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -330,7 +361,8 @@ int main(void)
     cmocka_unit_test(follows_the_friction_on_a_sphere),
     cmocka_unit_test(bounds_and_grades_any_friction),
     cmocka_unit_test(keeps_heights_without_a_solution),
-    cmocka_unit_test(refuses_walls_elsewhere)
+    cmocka_unit_test(refuses_walls_elsewhere),
+    cmocka_unit_test(refuses_other_units)
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -50,6 +50,12 @@ static size_t circle(int n, double (*x)[2])
   return (size_t)n;
 }
 
+static double next_random(unsigned *seed)
+{
+  *seed = *seed * 1664525u + 1013904223u;
+  return (*seed >> 8) / 16777216.0;
+}
+
 static void make(size_t n, const double (*x)[2], struct vg_outline *c)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -119,6 +125,134 @@ static void keeps_flat_corners(void **state)
   assert_int_equal(c.corner[3], 1);
   assert_int_equal(c.corner[9], 1);
   vg_outline_release(&c);
+}
+
+/* A star-shaped polygon around the origin that turns by 3 degrees or more at
+ * each of its n points. */
+static void random_polygon(int n, unsigned *seed, double (*x)[2])
+{
+  int is_good;
+
+  do {
+    is_good = 1;
+    for (int i = 0; i < n; i++) {
+      const double a = 2 * M_PI * (i + 0.8 * (next_random(seed) - 0.5)) / n;
+      const double r = 0.3 + next_random(seed);
+
+      x[i][0] = r * cos(a);
+      x[i][1] = 0.2 * r * sin(a);
+    }
+    for (int i = 0; i < n; i++) {
+      const double *p = x[i], *q = x[(i + 1) % n], *r = x[(i + 2) % n];
+      const double u[2] = { q[0] - p[0], q[1] - p[1] };
+      const double v[2] = { r[0] - q[0], r[1] - q[1] };
+
+      is_good &= fabs(atan2(u[0] * v[1] - u[1] * v[0],
+                            u[0] * v[0] + u[1] * v[1])) > 0.05;
+    }
+  } while (!is_good);
+}
+
+/* Area within the curve, by 64 points in each interval. */
+static double area_within(const struct vg_outline *c)
+{
+  double sum = 0, p[2], q[2], bend;
+
+  vg_outline_at(c, 0, 0, p, &bend);
+  for (size_t i = 0; i < c->n; i++)
+    for (int k = 1; k <= 64; k++) {
+      vg_outline_at(c, i, (c->s[i + 1] - c->s[i]) * k / 64, q, &bend);
+      sum += 0.5 * (p[0] * q[1] - q[0] * p[1]);
+      memcpy(p, q, sizeof p);
+    }
+  return sum;
+}
+
+static double area_of(int n, const double (*x)[2])
+{
+  double sum = 0;
+
+  for (int i = 0; i < n; i++) {
+    const double *p = x[i], *q = x[(i + 1) % n];
+
+    sum += 0.5 * (p[0] * q[1] - q[0] * p[1]);
+  }
+  return sum;
+}
+
+/* Up to 8 points are the corners of a polygon, and so are all that turn by 55
+ * degrees as their neighbour does, or by 100. */
+static void keeps_polygons(void **state)
+{
+  unsigned seed = 7;
+  double x[MOST][2];
+
+  (void)state;
+  for (int round = 0; round < 2000; round++) {
+    const int n = 3 + round % 6;
+    struct vg_outline c = VG_OUTLINE_INIT;
+    double area;
+
+    random_polygon(n, &seed, x);
+    make((size_t)n, (const double(*)[2])x, &c);
+    area = area_of(n, (const double(*)[2])x);
+    assert_int_equal(c.n_corner, n);
+    assert_true(fabs(area_within(&c) - area) < 1e-12);
+    vg_outline_release(&c);
+  }
+  for (int n = 9; n < 60; n++) {
+    struct vg_outline c = VG_OUTLINE_INIT;
+
+    for (int i = 0; i < n; i++) {
+      const double a = 2 * M_PI * i / n, r = i % 2 || i == n - 1 ? 1 : 0.3;
+
+      x[i][0] = r * cos(a);
+      x[i][1] = r * sin(a);
+    }
+    make((size_t)n, (const double(*)[2])x, &c);
+    assert_true(fabs(area_within(&c) - area_of(n, (const double(*)[2])x)) <
+                1e-6);
+    vg_outline_release(&c);
+  }
+}
+
+/* Polygons of any number of points keep their shape where each side has a
+ * point more, and no curve is far from its segment. */
+static void keeps_sides(void **state)
+{
+  unsigned seed = 11;
+  double x[MOST][2], y[MOST][2], p[2], bend;
+
+  (void)state;
+  for (int round = 0; round < 500; round++) {
+    const int n = 9 + round % 30;
+    struct vg_outline c = VG_OUTLINE_INIT;
+
+    for (int i = 0; i < n; i++) {
+      const double a = 2 * M_PI * i / n;
+      const double r = 0.5 + next_random(&seed);
+
+      x[i][0] = r * cos(a);
+      x[i][1] = r * sin(a);
+    }
+    make((size_t)n, (const double(*)[2])x, &c);
+    for (size_t i = 0; i < c.n; i++)
+      for (int k = 1; k < 8; k++) {
+        const double h = c.s[i + 1] - c.s[i], u = k / 8.0;
+        const double *a = c.x[i], *b = c.x[(i + 1) % c.n];
+
+        vg_outline_at(&c, i, h * u, p, &bend);
+        assert_true(hypot(p[0] - a[0] - u * (b[0] - a[0]),
+                          p[1] - a[1] - u * (b[1] - a[1])) <= 0.3001 * h);
+      }
+    vg_outline_release(&c);
+    for (int i = 0; i < 2 * n; i++)
+      for (int k = 0; k < 2; k++)
+        y[i][k] = 0.5 * (x[i / 2][k] + x[(i + 1) / 2 % n][k]);
+    make(2 * (size_t)n, (const double(*)[2])y, &c);
+    for (int i = 0; i < n; i++) assert_true(c.corner[2 * i] || c.turn < 0.14);
+    vg_outline_release(&c);
+  }
 }
 
 struct division {
@@ -229,6 +363,8 @@ int main(void)
     cmocka_unit_test(circle_is_smooth),
     cmocka_unit_test(finds_corners),
     cmocka_unit_test(keeps_flat_corners),
+    cmocka_unit_test(keeps_polygons),
+    cmocka_unit_test(keeps_sides),
     cmocka_unit_test(follows_the_requests),
     cmocka_unit_test(counts_the_base),
     cmocka_unit_test(refuses_tiny_edges),

@@ -59,7 +59,8 @@ static void reads_both_orders(void **state)
     /* Lednicer. */
     "Kite\n3. 3.\n\n0 0\n0.5 0.1\n1 0\n\n0 0\n0.5 -0.1\n1 0\n",
     "Kite\r\n  3  3\r\n0 0\r\n.5 1D-1\r\n1 0\r\n0 0\r\n.5 -.1\r\n1. 0.",
-    "# comment\n\nKite\n999 999\n1 0\n# another\n0.5 0.1\n0 0\n0.5 -0.1\n1 0"
+    "# comment\n\nKite\n999 999\n1 0 # edge\n# another\n0.5 0.1\n0 0\n"
+    "0.5 -0.1\n1 0"
   };
 
   (void)state;
@@ -141,6 +142,10 @@ static void refuses_curves(void **state)
   refuse("a\n1 0\n0 0\n1 0\n", VG_ERR_GEOMETRY, "wing.dat:2:", "has 2");
   refuse("a\n1 0\n0.5 0.1\n0.5 0.1\n0 0\n0.5 -0.1\n1 0\n", VG_ERR_GEOMETRY,
          "wing.dat:4:", "line 3");
+  refuse("a\n1 0\n0.5 0.1\n0.5000001 0.1\n0 0\n0.5 -0.1\n1 0\n",
+         VG_ERR_GEOMETRY, "wing.dat:4:", "only 1e-07 away");
+  refuse("a\n1 5e-7\n0.5 0.1\n0 0\n0.5 -0.1\n1 -5e-7\n", VG_ERR_GEOMETRY,
+         "only 1e-06 away", "sharp trailing edge");
   refuse("a\n1 0\n0.5 0\n0 0\n0.2 0\n0.95 0\n", VG_ERR_GEOMETRY,
          "wing.dat:2:", "no area");
   refuse("a\n1 0\n0.6 0.1\n0.3 -0.1\n0 0\n0.3 0.1\n0.6 -0.1\n1 0\n",

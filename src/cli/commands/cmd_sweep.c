@@ -171,8 +171,10 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   vg_status st = VG_OK;
 
   vg_settings_default(&p.asked);
-  if (!deck && vg_input_find(o->project, NULL, &p.read.files, NULL) >= 0)
-    deck = p.read.files.deck;
+  if (vg_input_find(o->project, NULL, &p.read.files, NULL) >= 0) {
+    if (!deck) deck = p.read.files.deck;
+    o->is_plane = p.read.files.is_section;
+  }
   if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
   if (st >= 0 && vg_settings_unit(&p.asked))
     vg_settings_convert(&p.asked, vg_settings_unit(&p.asked));

@@ -43,6 +43,7 @@ struct vg_sweep_options {
   int sets_farfield;   /* 1: the deck does not exclude a farfield made
                           by the program */
   int repeat, keep, json, quiet;
+  int is_plane; /* 1: the project is a plane section */
   int n_extra;
   char **extra; /* [n_extra] for vanguard mesh */
 };

@@ -116,6 +116,12 @@ vg_status vg_sweep_take_planned(const char *text, struct vg_sweep_options *o,
     return vg_fail(err, VG_ERR_INPUT,
                    "--planned needs a family with the laws of a workshop, as "
                    "in --family dpw:1-6 or hlpw:A-F");
+  if (o->is_plane)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "--planned: %s is a plane section, which vanguard plan does "
+                   "not accept; leave --planned out, so that all levels are "
+                   "meshed",
+                   o->project);
   st = take_levels("--planned", text, &named[o->rule], &o->planned, err);
   for (size_t i = 0; i < o->planned.n && st >= 0; i++)
     if (!vg_sweep_is_in(&o->family, o->planned.v[i]))
@@ -263,6 +269,9 @@ void vg_sweep_figures(const json_t *report, const struct vg_sweep_options *o,
   f[VG_FIGURE_LAYER_CELLS] = 0;
   for (int k = 0; k < 4; k++)
     f[VG_FIGURE_LAYER_CELLS] += number(layers, kind[k], NULL, NULL);
+  if (o->is_plane)
+    f[VG_FIGURE_LAYER_CELLS] = number(report, "plane", "quadrilaterals", NULL) +
+                               number(report, "plane", "layer_triangles", NULL);
   f[VG_FIGURE_FIRST] = number(layers, "all", "first", "mean");
   f[VG_FIGURE_Y_PLUS] = number(layers, "all", "y_plus", "mean");
   f[VG_FIGURE_GROWTH] = number(layers, "all", "growth", "max");
@@ -331,7 +340,8 @@ static double cells_ratio(const struct vg_sweep *s, size_t i)
   more = s->o->layer_count ? 1 : log(from->growth) / log(to->growth);
   share = p->figure[VG_FIGURE_LAYER_CELLS] / p->figure[VG_FIGURE_CELLS];
   if (!isfinite(share)) share = 0; /* no layers */
-  return finer * finer * (share * more + (1 - share) * finer);
+  return finer * (s->o->is_plane ? 1 : finer) *
+         (share * more + (1 - share) * finer);
 }
 
 /* Spacing that the workshop requests, or else the deck. */

@@ -14,15 +14,22 @@
 #define BLUNT 1.05   /* 60 degrees */
 #define PERHAPS 0.14 /* 8 degrees */
 #define RATIO 6.0
+#define PAIR 0.96      /* 55 degrees, at two successive points. */
+#define STRAIGHT 0.001 /* At points between straight segments. */
+#define BULGE                                                                  \
+  0.3 /* Largest distance of the curve from a segment, relative                \
+         to its length. */
 #define HALF_PI 1.5707963267948966
 
 /* Longest base of a blunt trailing edge, relative to the chord. */
 #define BASE 0.1 /* S95 */
 
 enum {
-  OVERLAP = 32
-}; /* Intervals by which a periodic spline is extended; an
-      error at the end decays by 0.27 in each. */
+  OVERLAP = 32, /* Intervals by which a periodic spline is extended; an error at
+                   the end decays by 0.27 in each. */
+  POLYGON = 8,  /* S95: points of a curve, and intervals of a piece, up to */
+  PIECE = 4     /* which it is a polygon. */
+};
 
 void vg_outline_release(struct vg_outline *c)
 {
@@ -66,23 +73,88 @@ static double turn_at(const struct vg_outline *c, size_t i, double *curvature)
   return cross < 0 ? -turn : turn;
 }
 
+static size_t previous(const struct vg_outline *c, size_t i)
+{
+  return i ? i - 1 : c->n - 1;
+}
+
+static size_t next(const struct vg_outline *c, size_t i)
+{
+  return i + 1 < c->n ? i + 1 : 0;
+}
+
+static void set_corner(struct vg_outline *c, size_t i, const double *turn)
+{
+  if (c->corner[i]) return;
+  c->corner[i] = turn[i] > 0 ? 1 : -1;
+  c->n_corner++;
+}
+
+/* Corners by the turns and the curvatures of the polygon. */
+static void find_sharp(struct vg_outline *c, const double *turn,
+                       const double *bend)
+{
+  for (size_t i = 0; i < c->n; i++) {
+    const size_t b = previous(c, i), a = next(c, i);
+    const double at = fabs(turn[i]);
+
+    if (at >= ALWAYS ||
+        (at >= PAIR && fmax(fabs(turn[b]), fabs(turn[a])) >= PAIR) ||
+        (at >= PERHAPS && bend[i] > RATIO * fmax(bend[b], bend[a])) ||
+        (at >= BLUNT && bend[i] > RATIO * fmin(bend[b], bend[a])))
+      set_corner(c, i, turn);
+  }
+}
+
+/* Corners next to others, whose curvature does not count. */
+static void find_next(struct vg_outline *c, const double *turn, double *bend)
+{
+  for (size_t i = 0; i < c->n; i++)
+    if (c->corner[i]) bend[i] = 0;
+  for (size_t i = 0; i < c->n; i++) {
+    const double most = fmax(bend[previous(c, i)], bend[next(c, i)]);
+
+    if (fabs(turn[i]) >= PERHAPS && bend[i] > RATIO * most)
+      set_corner(c, i, turn);
+  }
+}
+
+/* So few points show no curve: all that turn are corners. */
+static void find_polygons(struct vg_outline *c, const double *turn)
+{
+  size_t from, run = 0;
+
+  for (from = 0; from < c->n && !c->corner[from]; from++) continue;
+  for (size_t k = 1; k <= c->n && c->n_corner; k++) {
+    const size_t i = (from + k) % c->n;
+
+    run++;
+    if (!c->corner[i] && k < c->n) continue;
+    for (size_t j = 1; j < run && run <= PIECE; j++) {
+      const size_t at = (i + c->n - j) % c->n;
+
+      if (fabs(turn[at]) > STRAIGHT) set_corner(c, at, turn);
+    }
+    run = 0;
+  }
+  for (size_t i = 0; i < c->n && c->n <= POLYGON; i++)
+    if (fabs(turn[i]) > STRAIGHT) set_corner(c, i, turn);
+}
+
 static vg_status find_corners(struct vg_outline *c, struct vg_error *err)
 {
   double *bend = vg_alloc(2 * c->n, sizeof *bend), *turn = bend + c->n;
 
   if (!bend) return vg_fail_memory(err, "the corners of a curve");
   for (size_t i = 0; i < c->n; i++) turn[i] = turn_at(c, i, &bend[i]);
-  for (size_t i = 0; i < c->n; i++) {
-    const double before = bend[i ? i - 1 : c->n - 1];
-    const double after = bend[i + 1 < c->n ? i + 1 : 0];
-    const double at = fabs(turn[i]);
-
-    if (at >= ALWAYS ||
-        (at >= PERHAPS && bend[i] > RATIO * fmax(before, after)) ||
-        (at >= BLUNT && bend[i] > RATIO * fmin(before, after)))
-      c->corner[i] = turn[i] > 0 ? 1 : -1;
-    c->n_corner += c->corner[i] != 0;
-  }
+  find_sharp(c, turn, bend);
+  find_next(c, turn, bend);
+  find_polygons(c, turn);
+  for (size_t i = 0; i < c->n; i++)
+    if (!c->corner[i] && fabs(turn[i]) > c->turn) {
+      c->turn = fabs(turn[i]);
+      c->turns_at = i;
+    }
   free(bend);
   return VG_OK;
 }
@@ -98,16 +170,16 @@ static void find_nose(struct vg_outline *c)
   }
 }
 
-static size_t before(const struct vg_outline *c, size_t i)
+static size_t corner_before(const struct vg_outline *c, size_t i)
 {
-  do i = i ? i - 1 : c->n - 1;
+  do i = previous(c, i);
   while (!c->corner[i]);
   return i;
 }
 
-static size_t after(const struct vg_outline *c, size_t i)
+static size_t corner_after(const struct vg_outline *c, size_t i)
 {
-  do i = i + 1 < c->n ? i + 1 : 0;
+  do i = next(c, i);
   while (!c->corner[i]);
   return i;
 }
@@ -126,11 +198,11 @@ static void find_base(struct vg_outline *c)
 
   c->base[0] = c->base[1] = SIZE_MAX;
   if (!c->n_corner) return;
-  a = before(c, 0);
-  b = c->corner[0] ? 0 : after(c, 0);
+  a = corner_before(c, 0);
+  b = c->corner[0] ? 0 : corner_after(c, 0);
   if (!is_base(c, a, b) && c->corner[0]) {
     a = 0;
-    b = after(c, 0);
+    b = corner_after(c, 0);
   }
   if (!is_base(c, a, b)) return;
   c->base[0] = a;
@@ -201,13 +273,43 @@ static vg_status fit_all(struct vg_outline *c, struct vg_error *err)
   } else {
     a = first;
     do {
-      b = after(c, a);
+      b = corner_after(c, a);
       fit(c, a, b > a ? b - a : b + c->n - a, 0, scratch);
       a = b;
     } while (a != first);
   }
   free(scratch);
   return VG_OK;
+}
+
+/* Marks the ends of the intervals in which the curve is too far from the
+ * segment, so that it no longer has the shape of the points. */
+static size_t mark_bulges(struct vg_outline *c)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < c->n; i++) {
+    const size_t j = next(c, i);
+    const double h = c->s[i + 1] - c->s[i];
+    double x[2], bend, most = 0;
+
+    for (int k = 1; k < 8; k++) {
+      vg_outline_at(c, i, h * k / 8, x, &bend);
+      for (int e = 0; e < 2; e++)
+        x[e] -= c->x[i][e] + (c->x[j][e] - c->x[i][e]) * k / 8;
+      most = fmax(most, sqrt(x[0] * x[0] + x[1] * x[1]));
+    }
+    if (most <= BULGE * h) continue;
+    for (int k = 0; k < 2; k++) {
+      const size_t at = k ? j : i;
+
+      if (c->corner[at]) continue;
+      c->corner[at] = turn_at(c, at, &bend) > 0 ? 1 : -1;
+      c->n_corner++;
+      n++;
+    }
+  }
+  return n;
 }
 
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
@@ -232,8 +334,9 @@ vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
     c.s[i + 1] = c.s[i] + length(x[i], x[i + 1 < n ? i + 1 : 0]);
   find_nose(&c);
   VG_TRY(find_corners(&c, err));
+  do VG_TRY(fit_all(&c, err));
+  while (mark_bulges(&c));
   find_base(&c);
-  VG_TRY(fit_all(&c, err));
   *out = c;
   return VG_OK;
 done:

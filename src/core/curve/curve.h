@@ -23,9 +23,11 @@ struct vg_outline {
   /* [n] second derivatives of both coordinates at both ends of an interval. */
   double (*bend)[2][2];
   int8_t *corner; /* [n] 1: convex corner, -1: concave corner, 0: smooth. */
-  size_t nose;    /* Point farthest from point 0: the leading edge if that is
-                     the trailing edge. */
-  double chord;   /* Distance between the two. */
+  double turn; /* Largest turn of the polygon at a smooth point, in radians, */
+  size_t turns_at; /* and that point. */
+  size_t nose;     /* Point farthest from point 0: the leading edge if that is
+                      the trailing edge. */
+  double chord;    /* Distance between the two. */
   /* Blunt trailing edge: intervals from point base[0] to base[1] around or next
    * to point 0; both SIZE_MAX: none. */
   size_t base[2];
@@ -39,11 +41,16 @@ void vg_outline_release(struct vg_outline *c);
 
 /** Makes the curve through n >= 3 points, of which neighbours differ.
  *
- * A point is a corner where the polygon turns by 100 degrees or more, or by 8
- * degrees and its mean curvature is more than 6 times that at both next points,
- * or by 60 degrees and it is that at one of them, as on both sides of a short
- * base. A coarse polygon also turns at the points of a nose, but at all of
- * them. Arithmetic without libm other than sqrt. O(n). VG_ERR_MEMORY. */
+ * A point is a corner where the polygon turns by 100 degrees or more; by 55
+ * degrees, as at the next point; by 8 degrees, and its mean curvature is more
+ * than 6 times that at both next points, of which one that is a corner does not
+ * count; or by 60 degrees, and it is that at one of them, as on both sides of a
+ * short base. A coarse polygon also turns at the points of a nose, but at all
+ * of them. Few points show no curve: of 8 points or less, and between corners
+ * that are at most 4 intervals apart, all points that turn are corners. The
+ * ends of an interval are corners if the curve would be farther from its
+ * segment than 0.3 of its length. Arithmetic without libm other than sqrt.
+ * O(n), but for each repetition after the last rule. VG_ERR_MEMORY. */
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
                          struct vg_error *err);
 

@@ -16,6 +16,10 @@
 /* Distance of the leading points of both sides in Lednicer's order, relative to
  * the extent. */
 #define NOSE 0.05 /* S97 */
+/* Distance of successive points up to which they are the same one, relative to
+ * the extent, and to the distances of their other neighbours. */
+#define SAME 1e-6 /* S97 */
+#define NEXT 1e-4 /* S97 */
 #define SEPARATOR 999
 
 enum { POINTS_MIN = 3, SHOWN = 40 };
@@ -121,6 +125,39 @@ static void reverse(struct vg_section *s, size_t first, size_t n)
   }
 }
 
+/* Points that are nearly the same would have a segment that is no side and far
+ * shorter than all edges. */
+static vg_status check_distances(const struct reader *r, size_t first, size_t n,
+                                 struct vg_error *err)
+{
+  const struct vg_section *s = r->out;
+  const double least = SAME * extent(s, first, n);
+
+  for (size_t i = 0; i < n; i++) {
+    const size_t a = first + i, b = first + (i + 1) % n;
+    const double d = distance(s, a, b);
+    const double before = distance(s, first + (i + n - 1) % n, a);
+    const double after = distance(s, b, first + (i + 2) % n);
+
+    if (!(d > 0))
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "%s:%zu: the point (%.10g, %.10g) repeats that of line "
+                     "%zu; remove one of them",
+                     r->in->path, s->line[b], s->x[a][0], s->x[a][1],
+                     s->line[a]);
+    if (d > fmax(least, NEXT * fmin(before, after))) continue;
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%s:%zu: the point (%.10g, %.10g) is only %.3g away from "
+                   "that of line %zu, (%.10g, %.10g), and the next points are "
+                   "%.3g and %.3g away; %s",
+                   r->in->path, s->line[b], s->x[b][0], s->x[b][1], d,
+                   s->line[a], s->x[a][0], s->x[a][1], before, after,
+                   i + 1 < n ? "remove one of them"
+                             : "make both the same for a sharp trailing edge");
+  }
+  return VG_OK;
+}
+
 /* The points from `first` on become an element. */
 static vg_status close_element(struct reader *r, size_t first,
                                struct vg_error *err)
@@ -128,6 +165,7 @@ static vg_status close_element(struct reader *r, size_t first,
   struct vg_section *s = r->out;
   const char *path = r->in->path;
   struct vg_section_element e = { .first = first };
+  vg_status st;
 
   const int is_joined = s->n_point - first > 1 &&
                         same(s, first, s->n_point - 1);
@@ -139,15 +177,7 @@ static vg_status close_element(struct reader *r, size_t first,
                    "%s:%zu: a section needs at least %d different points, but "
                    "this one has %zu",
                    path, s->line[first], POINTS_MIN, e.n);
-  for (size_t i = first; i < s->n_point; i++) {
-    const size_t next = i + 1 < s->n_point ? i + 1 : first;
-
-    if (same(s, i, next))
-      return vg_fail(err, VG_ERR_GEOMETRY,
-                     "%s:%zu: the point (%.10g, %.10g) repeats that of line "
-                     "%zu; remove one of them",
-                     path, s->line[next], s->x[i][0], s->x[i][1], s->line[i]);
-  }
+  VG_TRY(check_distances(r, first, e.n, err));
   if (!(fabs(area(s, first, e.n)) > 0))
     return vg_fail(err, VG_ERR_GEOMETRY,
                    "%s:%zu: all points of this section lie on a line, so that "
@@ -160,7 +190,8 @@ static vg_status close_element(struct reader *r, size_t first,
   if (vg_reserve(&s->element, &s->cap, s->n + 1, sizeof *s->element))
     return vg_fail_memory(err, "the elements of a section");
   s->element[s->n++] = e;
-  return VG_OK;
+done:
+  return st;
 }
 
 /* Number of points that a coordinate of a line of counts states; 0: none. */
@@ -363,6 +394,7 @@ static vg_status take_line(struct reader *r, int *is_new, struct vg_error *err)
   while (n < 3 && vg_input_token_in_line(&row, &text[n], &len[n])) n++;
   if (!n) *is_new = 1;
   if (!n || *text[0] == '#') return VG_OK;
+  if (n > 2 && *text[2] == '#') n = 2;
   for (int k = 0; k < 2; k++)
     is_number[k] = k < n && vg_parse_real(text[k], len[k], &x[k]);
   if (n == 2 && is_number[0] && is_number[1]) {

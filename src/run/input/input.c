@@ -285,6 +285,7 @@ vg_status vg_input_find(const char *name, const char *deck,
     release_files(&f);
     return st;
   }
+  f.is_section = vg_section_is(f.surface);
   *out = f;
   return VG_OK;
 }

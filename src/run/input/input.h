@@ -25,6 +25,7 @@ struct vg_input_files {
   char *stem; /* Folder and project name without extension. */
   char *d3m, *front, *surface, *mapbc, *deck;
   char *tags, *aflr; /* AFLR files: .tags and .bc. */
+  int is_section;    /* 1: the surface is a plane section. */
 };
 
 /** Notes for the report, in the order in which they were added. */

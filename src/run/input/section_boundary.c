@@ -12,8 +12,14 @@
 #include "run/section/section_surface.h"
 #include "run/settings/plan_options.h"
 
-#define FAN_ANGLE 60.0 /* S96: sharp and blunt trailing edges */
-#define SIZE 0.02      /* S96: largest edge over the length of the section */
+#define FAN_ANGLE 60.0  /* S96: sharp and blunt trailing edges */
+#define SIZE 0.02       /* S96: largest edge over the length of the section */
+#define SLOT_NOTE 0.5   /* S96: width of a slot over the edge there: noted, */
+#define SLOT_LEAST 0.02 /* and refused */
+#define COARSE 1.05     /* 60 degrees: smooth points are reported */
+#define DEGREES 57.29577951308232
+
+enum { EDGES_MIN = 3 };
 
 void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
 {
@@ -118,7 +124,64 @@ static void note_found(const struct vg_boundary *b,
             "corners, %zu edges",
             b->surface.patch[i].name, f->chord, f->start[0], f->start[1], edge,
             f->n_corner, f->n_edge);
+    if (f->turn > COARSE)
+      vg_note(b->notes,
+              "section %s: the curve is smooth at (%.6g, %.6g), where the "
+              "points turn by %.0f degrees; if that is a corner, add a point "
+              "in the middle of both sides, otherwise more points along the "
+              "curve",
+              b->surface.patch[i].name, f->at[0], f->at[1], f->turn * DEGREES);
   }
+}
+
+/* Requests that the sections found cannot meet. */
+static vg_status check_found(const struct vg_boundary *b,
+                             const struct vg_section_found *found,
+                             struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const size_t n = b->surface.n_patch;
+  double base = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    base = fmax(base, found[i].base);
+    if (found[i].n_edge >= EDGES_MIN) continue;
+    return vg_fail(err, VG_ERR_INPUT,
+                   "section %s of chord %g would have only %zu edges with the "
+                   "scale %g; reduce scale or surface_size, or raise "
+                   "edges_per_turn",
+                   b->surface.patch[i].name, found[i].chord, found[i].n_edge,
+                   s->scale);
+  }
+  if (s->tail_cells && !(base > 0))
+    vg_note(b->notes,
+            "te_cells has no effect: no section has a blunt trailing edge");
+  return VG_OK;
+}
+
+/* A slot far narrower than its edges has flat triangles. */
+static vg_status check_slot(const struct vg_boundary *b, struct vg_error *err)
+{
+  const struct vg_patch *patch = b->surface.patch;
+  struct vg_section_slot slot;
+  vg_status st = vg_section_slot_find(&b->surface, &slot, err);
+
+  if (st < 0 || slot.width >= SLOT_NOTE * slot.edge) return st;
+  if (slot.width < SLOT_LEAST * slot.edge)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the slot between section %s and section %s at (%.6g, %.6g) "
+                   "is only %.3g wide, and the edges there are %.3g long; move "
+                   "the sections apart, unite them, or request edges of that "
+                   "width by a source",
+                   patch[slot.patch[0]].name, patch[slot.patch[1]].name,
+                   slot.at[0], slot.at[1], slot.width, slot.edge);
+  vg_note(b->notes,
+          "the slot between section %s and section %s at (%.6g, %.6g) is only "
+          "%.3g wide, and the edges there are %.3g long; request shorter ones "
+          "by a source",
+          patch[slot.patch[0]].name, patch[slot.patch[1]].name, slot.at[0],
+          slot.at[1], slot.width, slot.edge);
+  return VG_OK;
 }
 
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
@@ -152,6 +215,8 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
   b->flow.axis = -1;
   st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
   if (st >= 0) note_found(b, found);
+  if (st >= 0) st = check_found(b, found, err);
+  if (st >= 0) st = check_slot(b, err);
   free(found);
   return st;
 }
@@ -174,6 +239,23 @@ static struct vg_section_outer outer_of(const struct vg_boundary *b,
     o.hi[k] = f->has_box ? f->hi[k] : o.centre[k] + size;
   }
   return o;
+}
+
+/* Points that extend the box of the view to the outer boundary, so that sources
+ * and maps of sizes count in the whole plane. */
+static void reach_outer(struct vg_mesh *view,
+                        const struct vg_section_outer *outer)
+{
+  double *lo = view->point[view->n_point++];
+  double *hi = view->point[view->n_point++];
+
+  for (int k = 0; k < 2; k++) {
+    const double c = outer->centre[k], r = outer->radius;
+
+    lo[k] = outer->is_box ? outer->lo[k] : c - r;
+    hi[k] = outer->is_box ? outer->hi[k] : c + r;
+  }
+  lo[2] = hi[2] = 0;
 }
 
 struct edges {
@@ -204,6 +286,7 @@ vg_status vg_boundary_close_section(struct vg_boundary *b,
 
   vg_display_update(show, "farfield", 0, 0);
   VG_TRY(vg_section_sizes(&b->surface, &view, err));
+  reach_outer(&view, &outer);
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
   VG_TRY(

@@ -92,6 +92,27 @@ static double extent(const struct body *b, int axis)
   return hi > lo ? hi - lo : 0;
 }
 
+/* The axis that points up for a section, whose stream along z would have no
+ * trailing edges. */
+static vg_status find_up_in_plane(const struct body *b, int yaws, double up[3],
+                                  struct vg_error *err)
+{
+  const int axis = b->row->stream / 2 ? 0 : 1;
+  const int is_other = b->row->up != VG_UP_AUTO && b->row->up != VG_UP_X + axis;
+
+  if (is_other || yaws)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "wakes: line %zu: a section lies in the plane of x and y, "
+                   "but %s; leave it out: up is %c, and alpha is the angle of "
+                   "attack",
+                   b->number,
+                   is_other ? "the column up names another axis"
+                            : "beta turns the stream out of this plane",
+                   "xy"[axis]);
+  for (int k = 0; k < 3; k++) up[k] = k == axis;
+  return VG_OK;
+}
+
 /* The axis that points up. Without angles it does not matter. */
 static vg_status find_up(const struct body *b, int turns, double up[3],
                          struct vg_error *err)
@@ -118,13 +139,14 @@ static vg_status find_flows(struct body *b, struct vg_error *err)
   const size_t n_alpha = vg_wake_angles(b->row->alpha, alpha);
   const size_t n_beta = vg_wake_angles(b->row->beta, beta);
   double stream[3], up[3];
-  int turns = 0;
+  int turns = 0, yaws = 0;
   vg_status st;
 
   stream_of(b->row, stream);
   for (size_t i = 0; i < n_alpha; i++) turns |= alpha[i] != 0;
-  for (size_t i = 0; i < n_beta; i++) turns |= beta[i] != 0;
-  st = find_up(b, turns, up, err);
+  for (size_t i = 0; i < n_beta; i++) yaws |= beta[i] != 0;
+  st = b->read->is_section ? find_up_in_plane(b, yaws, up, err)
+                           : find_up(b, turns | yaws, up, err);
   b->n_flow = 0;
   for (size_t i = 0; i < n_alpha && st >= 0; i++)
     for (size_t j = 0; j < n_beta; j++)

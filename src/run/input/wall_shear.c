@@ -21,9 +21,11 @@
 #include "run/input/solution.h"
 
 /* L31: distance from a wall, relative to the longer of two local edges, up to
- * which its values hold; cosine of the angle between normals from which a wall
+ * which its values hold; largest ratio of the edge of the wall to that of the
+ * surface that counts; cosine of the angle between normals from which a wall
  * faces another way. */
 #define REACH 0.25
+#define COARSER 4.0
 #define FACING 0.2
 
 enum { NAMES = 1000, SAMPLES = 20000 };
@@ -450,13 +452,14 @@ static double ask(const struct vg_wall_shear *w, const double x[3],
 {
   struct search s = { w, x, normal, side, INFINITY, UINT32_MAX };
   const uint32_t *v;
-  double weight[3], sum = 0;
+  double weight[3], sum = 0, own = edge;
 
   vg_box_tree_approach(&w->tree, x, enter, leaf, &s);
   if (s.tri == UINT32_MAX) return -1;
   v = w->tri[s.tri];
   for (int k = 0; k < 3; k++)
     edge = fmax(edge, vg_distance(w->x[v[k]], w->x[v[(k + 1) % 3]]));
+  edge = fmin(edge, COARSER * own);
   if (!(s.d2 <= REACH * REACH * edge * edge)) return -1;
   vg_nearest_weights(x, w->x[v[0]], w->x[v[1]], w->x[v[2]], weight);
   for (int k = 0; k < 3; k++) sum += weight[k] * w->cf[v[k]];

@@ -44,7 +44,8 @@ double vg_wall_shear_side(const struct vg_wall_shear *w,
 
 /** Skin friction coefficient at the point of the walls nearest to x,
  * interpolated between its corners; negative if that point is farther away than
- * a quarter of the longer of `edge` and the longest edge of its triangle.
+ * a quarter of the longer of `edge` and the longest edge of its triangle, of
+ * which at most 4 times `edge` counts: walls in another unit are not near.
  *
  * @param normal  of the surface at x; walls that face the other way count only
  *                if no other wall is that near

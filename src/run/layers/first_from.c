@@ -315,9 +315,12 @@ static vg_status refuse_far(const struct work *w, struct vg_error *err)
     }
   vg_wall_shear_box(w->shear, a, b);
   return vg_fail(err, VG_ERR_INPUT,
-                 "first_from: no wall is near a wall of %s, which are between "
-                 "(%g %g %g) and (%g %g %g); those of the surface are between "
-                 "(%g %g %g) and (%g %g %g): are both in the same unit?",
+                 "first_from: only %zu of %zu points of walls are near a wall "
+                 "of %s, less than half. Its walls are between (%g %g %g) and "
+                 "(%g %g %g), those of the surface between (%g %g %g) and "
+                 "(%g %g %g): give a solution of this body in the unit and at "
+                 "the place of the surface",
+                 w->n - w->n_own - w->n_far, w->n - w->n_own,
                  w->b->read->settings.layer.first_from, a[0], a[1], a[2], b[0],
                  b[1], b[2], lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
 }
@@ -353,7 +356,7 @@ vg_status vg_first_from(const struct vg_layer_stage *s,
   set_heights(&w);
   count(&w);
   if (w.n_own == w.n) VG_TRY(refuse_own(err));
-  if (w.n_own + w.n_far == w.n) VG_TRY(refuse_far(&w, err));
+  if (2 * w.n_far > w.n - w.n_own) VG_TRY(refuse_far(&w, err));
   VG_TRY(smooth(&w, err));
   VG_TRY(list(&w, out, err));
   note(&w);

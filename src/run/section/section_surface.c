@@ -178,7 +178,9 @@ static void describe(const struct vg_outline *c, size_t n_edge,
                                       .n_edge = n_edge,
                                       .chord = c->chord,
                                       .start = { c->x[0][0], c->x[0][1] },
-                                      .is_corner = c->corner[0] != 0 };
+                                      .is_corner = c->corner[0] != 0,
+                                      .turn = c->turn };
+  memcpy(found->at, c->x[c->turns_at], sizeof found->at);
   if (c->base[0] != SIZE_MAX) found->base = vg_outline_base(c);
 }
 
@@ -258,7 +260,7 @@ vg_status vg_section_sizes(const struct vg_mesh *surface, struct vg_mesh *out,
                           .n_patch = surface->n_patch };
   size_t n_edge = 0;
 
-  view.point = vg_alloc(2 * n, sizeof *view.point);
+  view.point = vg_alloc(2 * n + 2, sizeof *view.point);
   view.tri = vg_alloc(n, sizeof *view.tri);
   view.tri_patch = vg_alloc(n, sizeof *view.tri_patch);
   if (!view.point || !view.tri || !view.tri_patch) {

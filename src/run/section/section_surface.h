@@ -38,6 +38,8 @@ struct vg_section_found {
                          smooth. */
   double start[2];    /* First point. */
   int is_corner;      /* 1: the first point is a corner. */
+  double turn, at[2]; /* Largest turn at a smooth point, in radians; and where.
+                       */
 };
 
 /** Replaces the points of a strip by those of the curves through them with the
@@ -72,9 +74,22 @@ vg_status vg_section_close(struct vg_mesh *strip,
                            const struct vg_size_function *size,
                            struct vg_error *err);
 
+/** The slot between two elements that is narrowest relative to the edge at one
+ * of its points; width INFINITY: one element only. */
+struct vg_section_slot {
+  double width, edge, at[2];
+  uint32_t patch[2];
+};
+
+/** O(n log n) for n edges. VG_ERR_MEMORY. */
+vg_status vg_section_slot_find(const struct vg_mesh *strip,
+                               struct vg_section_slot *out,
+                               struct vg_error *err);
+
 /** Triangles that request the edge lengths of walls and farfield in a sizing
  * field: an equilateral one on each edge in the plane z = 0. *out has points,
- * tri, tri_patch of its own; its patches are those of the surface, borrowed.
+ * tri, tri_patch of its own, with room for two more points; its patches are
+ * those of the surface, borrowed.
  * VG_ERR_MEMORY. */
 vg_status vg_section_sizes(const struct vg_mesh *surface, struct vg_mesh *out,
                            struct vg_error *err);

@@ -130,10 +130,18 @@ static const char *hits_input(const struct vg_outputs *o,
 }
 
 /* A .cogsg can hold only tetrahedra. */
-static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
+static vg_status refuse_mixed(const char *item, const struct vg_problem *p,
                               struct vg_error *err)
 {
-  if (s->cells == VG_LAYER_TETS || strcmp(item, "cogsg") != 0) return VG_OK;
+  const struct vg_settings *s = &p->asked;
+
+  if (strcmp(item, "cogsg") != 0) return VG_OK;
+  if (p->read.is_section)
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "write: a .cogsg can hold only tetrahedra, and the mesh of a "
+      "section has none; write b8.ugrid, su2, foam or cgns");
+  if (s->cells == VG_LAYER_TETS) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "write: a .cogsg can hold only tetrahedra, but cells is %s; "
                  "write b8.ugrid, or set cells to tets",
@@ -274,7 +282,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
     if (st >= 0 && !is_case(o->item[i])) st = refuse_folder(o, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
-    if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
+    if (st >= 0) st = refuse_mixed(o->item[i], p, err);
     if (st >= 0) st = refuse_absent(o->item[i], err);
   }
   if (st >= 0) st = vg_outputs_check_sheets(o, &p->asked, err);

@@ -49,6 +49,23 @@ static vg_status finish_section(struct vg_run *r, const struct vg_problem *p,
   return vg_comm_agree(r->comm, st, err);
 }
 
+/* The limit on cells, for the mesh in the plane. */
+static vg_status check_cells(const struct vg_settings *s,
+                             const struct vg_plane_mesh *m,
+                             struct vg_error *err)
+{
+  const uint64_t n = (uint64_t)m->n_tri + m->n_quad;
+
+  if (!s->max_cells || n <= (uint64_t)s->max_cells) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the mesh in the plane has %llu cells, %llu of them in the "
+                 "layers, but only %llu are allowed (max_cells); use a coarser "
+                 "spacing, fewer layers, or increase the limit",
+                 (unsigned long long)n,
+                 (unsigned long long)(m->n_layer_tri + m->n_quad),
+                 (unsigned long long)s->max_cells);
+}
+
 vg_status vg_run_section(struct vg_run *r, const struct vg_problem *p,
                          struct vg_layer_stage *layers, struct vg_display *show,
                          struct vg_error *err)
@@ -69,6 +86,7 @@ vg_status vg_run_section(struct vg_run *r, const struct vg_problem *p,
   width = vg_section_width(s, slab);
   st = vg_section_mesh_new(slab, grown, s->section_axis ? 1 : 2, width,
                            &r->section, err);
+  if (st >= 0) st = check_cells(s, &r->section.plane, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   r->spans.n_rank = r->size;
   r->spans.n_thread = r->threads;

@@ -14,7 +14,7 @@ cf='0.003 * (1 + 0.5 * sin(4 * x))'
 first_from write wing.lb8.ugrid s.vtu 1,2,3 cf "$cf"
 
 # The deck of the demo requests y+ 1 at Reynolds number 5e6 and length 0.7.
-for cells in mixed hex tets; do
+for cells in mixed tets; do
   vanguard mesh -q -p wing --write b8.ugrid --cells "$cells" \
     --first-from s.vtu --out "$cells" --threads 1
   exits 0
@@ -25,7 +25,7 @@ read -r share n <<<"$(first_from measure mixed/wing.b8.ugrid 1,2,3 \
   "0.7 / (5e6 * sqrt(($cf) / 2))")"
 [ "$share" -ge 99 ] && [ "$n" -gt 3000 ] ||
   fail "$share % of $n first heights are those of y+ 1"
-grep -q '"requested": 1.0' hex/wing.report.json || fail "no y+ in the report"
+grep -q '"requested": 1.0' mixed/wing.report.json || fail "no y+ in the report"
 vanguard plan -q -p wing --first-from s.vtu --json
 exits 0
 
@@ -128,6 +128,12 @@ refused() {
   absent no
 }
 refused nowhere.vtu "nowhere.vtu"
+for unit in 1000 0.001; do
+  awk -v unit=$unit '/Name=/ { on = /NumberOfComponents="3"/ && !/Name="cf"/ }
+       on && NF == 3 && !/</ { $1 *= unit; $2 *= unit; $3 *= unit } 1' s.vtu \
+    >unit.vtu
+  refused unit.vtu "points of walls are near a wall of unit.vtu, less than half"
+done
 refused empty "there is no .vtu or .vtp in the folder empty"
 refused s.csv "neither a .vtu nor a .vtp"
 refused s.vtu "first and first_from are both given" --first 1e-5
@@ -150,7 +156,7 @@ refused bad.vtu "value 1 of 5801 is not a number"
 first_from write wing.lb8.ugrid bad.vtu 1 cf "(1, 2, 3, 4)"
 refused bad.vtu "has 4 components"
 first_from write wing.lb8.ugrid bad.vtu 4 cf "1"
-refused bad.vtu "no wall is near a wall of bad.vtu"
+refused bad.vtu "points of walls are near a wall of bad.vtu, less than half"
 sed 's/PointData/CellData/' s.vtu >bad.vtu
 refused bad.vtu "'cf' has values in the cells" --first-field cf
 {

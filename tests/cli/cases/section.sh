@@ -100,7 +100,63 @@ exits 0
 says g/two.su2 "MARKER_TAG= flap"
 says out "quadrilaterals                         0"
 
+# The corners of a plate of four points are kept: its walls have their area.
+printf 'plate\n1 0.001\n0 0.001\n0 -0.001\n1 -0.001\n' >plate.dat
+vanguard mesh -q -p plate.dat --layers no --out plate --write su2
+exits 0
+says out "4 corners"
+awk '/^NPOIN/ { n = $2; i = 0; next } n > i { x[i] = $1; y[i++] = $2; next }
+     /MARKER_TAG/ { on = $2 == "plate" }
+     on && NF == 3 { area += x[$2] * y[$3] - x[$3] * y[$2] }
+     END { area /= 2; area = area < 0 ? -area : area
+           exit !(area > 0.002 - 1e-9 && area < 0.002 + 1e-9) }' \
+  plate/plate.su2 || fail "the plate has another area"
+
+# The wake follows the angle of attack in the plane: points are near the line at
+# 8 degrees, and fewer are near that at -8 degrees.
+wake() { # COLUMNS VALUES
+  printf 'wake\n\nlayers\nno\n\nwakes\n%s\n%s\n' "$1" "$2" >wake.deck
+  vanguard mesh -q -p d/aerofoil.dat --deck wake.deck --out w --write su2
+}
+wake "patch  length  alpha" "*  3  8"
+exits 0
+awk '/^NPOIN/ { n = $2; next } n-- > 0 && $1 > 1.5 && $1 < 3 {
+       a = $2 - 0.14 * ($1 - 1); b = $2 + 0.14 * ($1 - 1)
+       up += a * a < 0.01; down += b * b < 0.01 }
+     END { exit !(up > 40 && up > 4 * down) }' w/aerofoil.su2 ||
+  fail "the wake is not in the plane"
+wake "patch  up  alpha" "*  z  8"
+exits 1
+says err "the column up names another axis"
+wake "patch  beta" "*  3"
+exits 1
+says err "beta turns the stream out of this plane"
+
 # Refusals leave nothing behind.
+for gap in 0.000001 0.01; do
+  awk -v gap=$gap '/^flap/ { on = 1 }
+    on && NF == 2 { printf "%.9f %.9f\n", $1 + gap - 0.1, $2 + 0.08; next }
+    1' two.dat >near.dat
+  vanguard mesh -q -p near.dat --layers no --out n
+  if [ $gap = 0.01 ]; then exits 0; else
+    exits 1
+    says err "the slot between section main and section flap at"
+  fi
+done
+vanguard mesh -q -p d/aerofoil.dat --layers no --scale 50 --le-spacing 0 \
+  --te-spacing 0 --edges-per-turn 5 --out m
+exits 1
+says err "edges with the scale 50; reduce scale"
+vanguard mesh -q -p d/aerofoil --max-cells 2000 --out m
+exits 1
+says err "are allowed (max_cells)"
+[ ! -e m ] || fail "a refused run left files"
+vanguard mesh -q -p d/aerofoil --cells tets --write cogsg --out m
+exits 1
+says err "the mesh of a section has none"
+vanguard sweep -q -p d/aerofoil --family hlpw:A-B --planned B -o m
+exits 1
+says err "leave --planned out"
 vanguard surface -q d/aerofoil.dat --out s
 exits 1
 says err "is a plane section"
