@@ -2,6 +2,7 @@
 /* Zones of random nestings: blocks in a cube of tetrahedra, inside each other,
  * touching in faces and edges, and cut by the sides of the cube. The sets of
  * cells that their faces connect are the zones. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -280,6 +281,11 @@ static size_t compare(const struct scene *s, const struct vg_zone_map *map,
     assert_true(n > 0 && r[z].n_cell == n);
     assert_float_equal(r[z].volume, map->volume[z], 1e-12);
     assert_float_equal(r[z].volume, (double)n / 6 * STEP * STEP * STEP, 1e-12);
+    /* The edges of such a tetrahedron: three sides, two diagonals of squares,
+     * and that of the cube. */
+    assert_float_equal(r[z].edge_mean, STEP * (3 + 2 * sqrt(2) + sqrt(3)) / 6,
+                       1e-7);
+    assert_float_equal(r[z].edge_max, STEP * sqrt(3), 1e-12);
     while (memcmp(s->cells.tet[part], m->tet[at], sizeof *m->tet)) part++;
     part = s->part[part];
     for (uint32_t c = 0; c < TETS; c++)
@@ -291,6 +297,28 @@ static size_t compare(const struct scene *s, const struct vg_zone_map *map,
   assert_int_equal(n_bad, 0);
   free(r);
   return n_set;
+}
+
+/* A triangle that is missing in an interface is a face between two zones. */
+static void open_mesh(struct vg_mesh *m)
+{
+  size_t n;
+  double x[3];
+
+  assert_int_equal(vg_zone_faces_judge(m, &n, x, NULL), VG_OK);
+  assert_int_equal(n, 0);
+  if (!m->n_sheet_tri) return;
+  m->n_sheet_tri--;
+  assert_int_equal(vg_zone_faces_judge(m, &n, x, NULL), VG_OK);
+  m->n_sheet_tri++;
+  assert_int_equal(n, 1);
+  for (int d = 0; d < 3; d++) {
+    const uint32_t *v = m->sheet_tri[m->n_sheet_tri - 1];
+
+    assert_float_equal(
+      x[d], (m->point[v[0]][d] + m->point[v[1]][d] + m->point[v[2]][d]) / 3,
+      1e-12);
+  }
 }
 
 /* Places in cells, and the places at which zones are not known. */
@@ -342,6 +370,7 @@ static size_t run(uint64_t number)
                      VG_OK);
     assert_int_equal(vg_slices_collect(&sorted, 1, &whole, &err), VG_OK);
     n = compare(s, &map, &whole);
+    open_mesh(&whole);
     ask_places(s, &map, &whole);
   } else assert_non_null(strstr(err.text, "single point"));
   vg_zone_slices_close(keep);

@@ -233,23 +233,28 @@ static vg_status put_text(const struct arguments *a, const struct vg_problem *p,
   return VG_OK;
 }
 
-/* Every triangle of an interface lies between two zones. */
+/* Interfaces are all faces between two zones. */
 static vg_status check_interfaces(const struct arguments *a,
                                   const struct vg_mesh *m,
                                   struct vg_mesh_report *r,
                                   struct vg_error *err)
 {
+  const char *what = "triangles of interfaces have one zone on both sides";
   double x[3];
   size_t n;
   vg_status st = vg_interfaces_judge(m, &n, x, err);
 
+  if (st >= 0 && !n) {
+    what = "faces between two zones are not in the interface between them";
+    st = vg_zone_faces_judge(m, &n, x, err);
+  }
   if (st < 0 || !n) return st;
   r->is_valid = 0;
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "%s: the mesh is not valid: %zu triangles of interfaces have "
-                 "one zone on both sides, the first one at (%g, %g, %g); write "
-                 "the zones and interfaces again from the mesh they belong to",
-                 a->one.file, n, x[0], x[1], x[2]);
+                 "%s: the mesh is not valid: %zu %s, the first one at (%g, %g, "
+                 "%g); write the zones and interfaces again from the mesh they "
+                 "belong to",
+                 a->one.file, n, what, x[0], x[1], x[2]);
 }
 
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,

@@ -385,6 +385,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(vg_run_mesh(m, p, &r->layers, &r->show, err));
   front = vg_layer_stage_front(&r->layers, &p->boundary.surface);
   vg_effects_note(&m->effects, &front, &p->resolved.settings, &p->notes);
+  vg_run_note_zones(m, &p->boundary.surface, &p->notes);
   vg_problem_note_unused(p, r->layers.is_on, VG_USE_JUDGED_MESH);
   vg_report_layers_note(&r->layers, &p->boundary.surface, &p->notes);
   st = write_all(r, a, err);

@@ -2,18 +2,21 @@
 #include "core/judge/zone_quality.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
 #include "core/geometry/exact_sum.h"
+#include "core/geometry/vector.h"
 #include "core/judge/quality.h"
 
 /* Sums of a zone. */
 struct sums {
   uint64_t n_cell;
-  struct vg_exact volume;
-  double angle_min;
+  uint64_t n_tet;
+  struct vg_exact volume, edge; /* edge: of the mean edges of tetrahedra */
+  double angle_min, edge2_max;  /* edge2_max: squared length */
 };
 
 struct vg_zone_quality {
@@ -53,6 +56,21 @@ void vg_zone_quality_free(struct vg_zone_quality *q)
   free(q);
 }
 
+static void add_edges(const double (*x)[3], const uint32_t *cell,
+                      struct sums *to)
+{
+  double sum = 0;
+
+  for (int i = 0; i < 3; i++)
+    for (int k = i + 1; k < 4; k++) {
+      const double d2 = vg_distance2(x[cell[i]], x[cell[k]]);
+
+      sum += sqrt(d2);
+      if (d2 > to->edge2_max) to->edge2_max = d2;
+    }
+  vg_exact_add(&to->edge, sum / 6);
+}
+
 /* Adds n cells of a kind. angle: of tetrahedra, or NULL */
 static void add_run(const struct vg_slice *slice, int kind, size_t first,
                     size_t n, const float *angle, struct sums *to)
@@ -63,9 +81,17 @@ static void add_run(const struct vg_slice *slice, int kind, size_t first,
   for (size_t c = first; c < first + n; c++) {
     vg_exact_add(&to->volume,
                  vg_cell_volume(slice->x, kind, slice->cell[kind] + c * width));
-    if (angle && (double)angle[c] < to->angle_min)
-      to->angle_min = (double)angle[c];
+    if (!angle) continue;
+    to->angle_min = fmin(to->angle_min, (double)angle[c]);
+    add_edges(slice->x, slice->cell[kind] + c * width, to);
   }
+  if (angle) to->n_tet += n;
+}
+
+static void join(struct vg_exact *to, const struct vg_exact *more)
+{
+  for (int i = 0; i < VG_EXACT_LIMBS; i++) to->limb[i] += more->limb[i];
+  to->n_odd += more->n_odd;
 }
 
 static void merge(struct vg_zone_quality *q, size_t z, const struct sums *more)
@@ -75,10 +101,11 @@ static void merge(struct vg_zone_quality *q, size_t z, const struct sums *more)
   while (atomic_flag_test_and_set(&q->busy)) {
   }
   to->n_cell += more->n_cell;
-  for (int i = 0; i < VG_EXACT_LIMBS; i++)
-    to->volume.limb[i] += more->volume.limb[i];
-  to->volume.n_odd += more->volume.n_odd;
-  if (more->angle_min < to->angle_min) to->angle_min = more->angle_min;
+  to->n_tet += more->n_tet;
+  join(&to->volume, &more->volume);
+  join(&to->edge, &more->edge);
+  to->angle_min = fmin(to->angle_min, more->angle_min);
+  to->edge2_max = fmax(to->edge2_max, more->edge2_max);
   atomic_flag_clear(&q->busy);
 }
 
@@ -124,6 +151,14 @@ vg_status vg_zone_quality_add(struct vg_zone_quality *q,
   return VG_OK;
 }
 
+static vg_status sum_exact(struct vg_comm *comm, struct vg_exact *sum,
+                           struct vg_error *err)
+{
+  vg_status st = vg_comm_sum(comm, VG_EXACT_LIMBS, sum->limb, err);
+
+  return st < 0 ? st : vg_comm_sum(comm, 1, &sum->n_odd, err);
+}
+
 vg_status vg_zone_quality_sum(struct vg_comm *comm,
                               const struct vg_zone_quality *q,
                               struct vg_zone_report *report,
@@ -133,15 +168,20 @@ vg_status vg_zone_quality_sum(struct vg_comm *comm,
 
   for (size_t z = 0; q && z < q->m->n_zone; z++) {
     struct sums sums = q->sums[z];
+    uint64_t n[2] = { sums.n_cell, sums.n_tet };
+    double most[2] = { -sums.angle_min, sums.edge2_max };
 
-    sums.angle_min = -sums.angle_min;
-    VG_TRY(vg_comm_sum(comm, 1, &sums.n_cell, err));
-    VG_TRY(vg_comm_sum(comm, VG_EXACT_LIMBS, sums.volume.limb, err));
-    VG_TRY(vg_comm_sum(comm, 1, &sums.volume.n_odd, err));
-    VG_TRY(vg_comm_max(comm, 1, &sums.angle_min, err));
-    report[z] = (struct vg_zone_report){ sums.n_cell,
-                                         vg_exact_value(&sums.volume),
-                                         -sums.angle_min };
+    VG_TRY(vg_comm_sum(comm, 2, n, err));
+    VG_TRY(sum_exact(comm, &sums.volume, err));
+    VG_TRY(sum_exact(comm, &sums.edge, err));
+    VG_TRY(vg_comm_max(comm, 2, most, err));
+    report[z] = (struct vg_zone_report){
+      .n_cell = n[0],
+      .volume = vg_exact_value(&sums.volume),
+      .angle_min = -most[0],
+      .edge_mean = n[1] ? vg_exact_value(&sums.edge) / (double)n[1] : 0,
+      .edge_max = sqrt(most[1])
+    };
   }
 done:
   return st;

@@ -14,6 +14,9 @@ struct vg_zone_report {
   double volume;
   double angle_min; /* smallest dihedral angle of its tetrahedra, degrees; 180
                        without tetrahedra */
+  /* Edges of its tetrahedra: the mean over the cells of their mean edge, and
+   * the largest one; 0 without tetrahedra. */
+  double edge_mean, edge_max;
 };
 
 struct vg_zone_quality;
@@ -30,8 +33,8 @@ vg_status vg_zone_quality_add(struct vg_zone_quality *q,
                               const struct vg_slice *slice,
                               struct vg_error *err);
 
-/** After all slices. Volumes are exact sums, so that they depend neither on
- * slices nor on ranks. Collective.
+/** After all slices. Volumes and edges are exact sums, so that they depend
+ * neither on slices nor on ranks. Collective.
  * @param report  out: [n_zone], the same on all ranks */
 vg_status vg_zone_quality_sum(struct vg_comm *comm,
                               const struct vg_zone_quality *q,
@@ -46,7 +49,15 @@ void vg_zone_quality_free(struct vg_zone_quality *q);
 vg_status vg_interfaces_judge(const struct vg_mesh *m, size_t *n, double x[3],
                               struct vg_error *err);
 
-/** The same for a whole mesh.
+/** Faces between cells of two zones that are in no interface, although an
+ * interface lies between these zones: *n of them; the first one is at x
+ * (zone_faces.c). Zones without an interface between them may touch, as in
+ * files of other programs. O(n + k log k) with k faces whose points are in
+ * several zones. VG_ERR_MEMORY. */
+vg_status vg_zone_faces_judge(const struct vg_mesh *m, size_t *n, double x[3],
+                              struct vg_error *err);
+
+/** Figures of the zones of a whole mesh.
  * @param report  out: [n_zone], to be freed; NULL without zones
  * VG_ERR_MEMORY. */
 vg_status vg_zone_quality_judge(const struct vg_mesh *m,

@@ -381,25 +381,43 @@ static size_t first_of_name(const struct vg_mesh *m, size_t p)
   return i;
 }
 
-/* by: [z->n] the interface of each zone, or NO_PATCH or SEVERAL; largest:
- * [n_patch] the largest zone next to each interface. */
-static void find_interfaces(const struct vg_zone_map *z, int64_t *by,
-                            uint32_t *largest)
+/* largest: [n_patch] the largest zone next to each interface, by its first
+ * patch. */
+static void find_largest(const struct vg_zone_map *z, uint32_t *largest)
+{
+  const struct vg_mesh *m = z->surface;
+
+  for (size_t p = 0; p < m->n_patch; p++) largest[p] = UINT32_MAX;
+  for (size_t t = 0; t < m->n_tri; t++)
+    if (m->patch[m->tri_patch[t]].is_interface) {
+      const size_t i = first_of_name(m, m->tri_patch[t]);
+
+      if (z->of[t] < largest[i]) largest[i] = z->of[t];
+    }
+}
+
+/* by: [z->n] the interface between each zone and the largest zone next to it,
+ * which has to be larger than itself; or NO_PATCH or SEVERAL */
+static void find_interfaces(const struct vg_zone_map *z,
+                            const uint32_t *largest, int64_t *by)
 {
   const struct vg_mesh *m = z->surface;
 
   for (size_t k = 0; k < z->n; k++) by[k] = NO_PATCH;
-  for (size_t p = 0; p < m->n_patch; p++) largest[p] = UINT32_MAX;
-  for (size_t t = 0; t < m->n_tri; t++) {
-    const uint32_t p = m->tri_patch[t], zone = z->of[t];
-    size_t i;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t t = 0; t < m->n_tri; t++) {
+      const uint32_t p = m->tri_patch[t], zone = z->of[t];
+      int64_t i;
 
-    if (!m->patch[p].is_interface) continue;
-    i = first_of_name(m, p);
-    by[zone] = by[zone] == NO_PATCH || by[zone] == (int64_t)i ? (int64_t)i
-                                                              : SEVERAL;
-    if (zone < largest[i]) largest[i] = zone;
-  }
+      if (!m->patch[p].is_interface) continue;
+      i = (int64_t)first_of_name(m, p);
+      if (largest[i] >= zone) continue;
+      if (by[zone] == NO_PATCH || (!pass && largest[i] < largest[by[zone]]))
+        by[zone] = i;
+      else if (pass && by[zone] != i && by[zone] != SEVERAL &&
+               largest[i] == largest[by[zone]])
+        by[zone] = SEVERAL;
+    }
 }
 
 static int has_name(const struct vg_zone_map *z, size_t n, const char *name)
@@ -416,10 +434,10 @@ static vg_status name_zones(struct vg_zone_map *z, struct vg_error *err)
   uint32_t *largest = vg_alloc(z->surface->n_patch, sizeof *largest);
   const int bad = !by || !largest;
 
-  if (!bad) find_interfaces(z, by, largest);
+  if (!bad) find_largest(z, largest);
+  if (!bad) find_interfaces(z, largest, by);
   for (size_t k = 0; !bad && k < z->n; k++) {
-    const char *name = by[k] >= 0 && largest[by[k]] < k ? patch[by[k]].name
-                                                        : "";
+    const char *name = by[k] >= 0 ? patch[by[k]].name : "";
     char *to = z->zone[k].name;
 
     if (*name && !has_name(z, k, name)) snprintf(to, VG_NAME_MAX, "%s", name);

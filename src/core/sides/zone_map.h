@@ -39,8 +39,9 @@ struct vg_zone_map {
 /** Find the zones of a closed surface, with doubled inner surfaces
  * (core/sides/inner.h), that has interfaces (is_interface of its patches).
  *
- * A zone that interfaces of one name alone separate from a larger zone has this
- * name, others have the name zone_N with their number.
+ * A zone has the name of the interfaces between it and the largest zone next to
+ * it, if that zone is larger and they have one name. Others have the name
+ * zone_N with their number.
  *
  * VG_ERR_GEOMETRY if an interface has the same zone on both sides: the message
  * names the place, and the free edges of the interface, if it has any.

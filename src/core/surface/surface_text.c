@@ -114,6 +114,9 @@ static const char *remedy(const struct vg_mesh *m, const struct vg_defect *d)
     return "the triangle has no area; remove it by swapping or collapsing an "
            "edge";
   case VG_DEFECT_DUPLICATE_TRIANGLE:
+    if (is_inner(m, d->face[0]) || is_inner(m, d->face[1]))
+      return "two triangles have the same points; the file has to contain each "
+             "triangle of an inner surface once: remove one of them there";
     return "two triangles have the same points; remove one, or both if they "
            "are a wall of zero thickness";
   case VG_DEFECT_SHARED_WALL:

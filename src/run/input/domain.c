@@ -255,12 +255,11 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
-  char list[400], half[160] = "", remedy[160];
+  char list[400], half[160] = "", remedy[160], taken[240];
   struct caps works = { 0, 0, 0 };
   size_t n = 0;
-  vg_status st;
+  vg_status st = vg_boundary_refuse_plane(b, err);
 
-  st = vg_boundary_refuse_plane(b, err);
   if (st < 0) return st;
   st = vg_domain_rims(&b->surface, &n, &rim, &why);
   if (b->rim_gap > 0) {
@@ -284,6 +283,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   }
   if (st < 0) return vg_fail(err, st, "%s", why.text);
   list_rims(rim, n, list, sizeof list);
+  vg_boundary_name_inner(b, taken, sizeof taken);
   if (n == 1 && rim[0].axis >= 0)
     snprintf(half, sizeof half,
              ". If it is one half of a symmetric model, cut at %c = %g, give "
@@ -300,15 +300,17 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
     if (vg_boundary_suggest_inner(b, remedy, sizeof remedy)) *half = 0;
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: the surface is open: %zu rim%s (%s). Caps on the rims "
-                 "(--close-holes) would intersect or overlap the surface%s%s",
-                 b->read->files.stem, n, n > 1 ? "s" : "", list, half, remedy);
+                 "(--close-holes) would intersect or overlap the surface%s%s%s",
+                 b->read->files.stem, n, n > 1 ? "s" : "", list, half, remedy,
+                 taken);
     free(rim);
     return st;
   }
   name_caps(&works, n, remedy, sizeof remedy);
   st = vg_fail(err, VG_ERR_GEOMETRY,
-               "%s: the surface is open: %zu rim%s (%s). %s%s",
-               b->read->files.stem, n, n > 1 ? "s" : "", list, remedy, half);
+               "%s: the surface is open: %zu rim%s (%s). %s%s%s",
+               b->read->files.stem, n, n > 1 ? "s" : "", list, remedy, half,
+               taken);
   free(rim);
   return st;
 }

@@ -267,11 +267,33 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
   if (*list)
     snprintf(text, size,
              has_list ? "; if fluid is on both sides of its open sheets, add "
-                        "%s to --baffles or --sheets"
+                        "%s to --baffles, --sheets or --zone-interfaces"
                       : "; if fluid is on both sides of its open sheets, give "
-                        "--baffles %s (or --sheets)",
+                        "--baffles %s (or --sheets, or --zone-interfaces "
+                        "where it separates zones)",
              list);
   return *list != 0;
+}
+
+void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
+                            size_t size)
+{
+  const struct vg_mesh *m = &b->surface;
+  char list[120] = "";
+  size_t n = 0;
+
+  *text = 0;
+  for (size_t i = 0; i < m->n_patch && n < sizeof list; i++)
+    if (m->patch[i].inner == VG_INNER_FRONT)
+      n += (size_t)snprintf(list + n, sizeof list - n, "%s%d%s%.24s",
+                            n ? ", " : "", (int)m->patch[i].id,
+                            *m->patch[i].name ? " " : "", m->patch[i].name);
+  if (n)
+    snprintf(text, size,
+             ". These patches are inner surfaces and close nothing: %s%s; if "
+             "one of them bounds the fluid, remove it from the list of "
+             "baffles, sheets or zone_interfaces",
+             list, n < sizeof list ? "" : "...");
 }
 
 /* --- check -----------------------------------------------------------------

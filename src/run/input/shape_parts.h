@@ -70,6 +70,11 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err);
 vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
                                 struct vg_error *err);
 
+/** Names the patches that are inner surfaces, as a further sentence of a
+ * message on an open surface; "" without any. */
+void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
+                            size_t size);
+
 /** Suggests `baffles` for a surface that is closed without the patches that
  * have open edges, as the end of a message: "; if fluid is on both sides of its
  * open sheets, give --baffles 7,8". Returns 0 for other surfaces; text is

@@ -207,7 +207,8 @@ vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
     if (n++ < SHOWN_PATCHES)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch->id);
-    if (!is_partly_set) continue;
+    /* An interface in the boundary is a wall of a zone without cells. */
+    if (!is_partly_set && !patch->is_interface) continue;
     patch->bc = patch->family = 5;
     patch->bc_fun3d = 3000;
   }

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/mesh/copies.h"
 
 struct vg_zones {
   struct vg_zone_map map;
@@ -130,6 +132,27 @@ done:
   return st;
 }
 
+void vg_zones_limits(const struct vg_zone_map *z, const double *hmax,
+                     struct vg_zone_limit *limit)
+{
+  const struct vg_mesh *m = z->surface;
+
+  for (size_t k = 0; k < z->n; k++)
+    limit[k] = (struct vg_zone_limit){ .hmax = hmax[k] };
+  for (size_t t = 0; t < m->n_tri; t++) {
+    struct vg_zone_limit *to = &limit[z->of[t]];
+
+    for (int k = 0; k < 3; k++) {
+      const double edge = vg_distance(m->point[m->tri[t][k]],
+                                      m->point[m->tri[t][(k + 1) % 3]]);
+
+      if (edge <= to->edge) continue;
+      to->edge = edge;
+      to->patch = vg_mesh_front_patch(m, m->tri_patch[t]);
+    }
+  }
+}
+
 vg_status vg_zones_check(const struct vg_boundary *b, struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
@@ -195,7 +218,7 @@ static void note_zones(const struct vg_boundary *b, const struct vg_zones *z)
     char size[40] = "";
 
     if (z->hmax[k] > 0)
-      snprintf(size, sizeof size, ", edges of at most %g", z->hmax[k]);
+      snprintf(size, sizeof size, ", requested size %g", z->hmax[k]);
     vg_note(b->notes, "zone %d %s: %s, volume %.6g%s", (int)a->id, a->name,
             vg_zone_kind_word[a->kind], z->map.volume[k], size);
   }

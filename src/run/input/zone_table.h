@@ -20,6 +20,18 @@ vg_status vg_zones_make(const struct vg_settings *s,
                         struct vg_zone_map *z, double **hmax,
                         struct vg_error *err);
 
+/** A zone with a requested size, and what limits it there: the patch of the
+ * longest edge among the triangles that look into the zone. */
+struct vg_zone_limit {
+  double hmax;  /* 0: no request */
+  size_t patch; /* of the surface */
+  double edge;
+};
+
+/** limit: out [z->n], from hmax [z->n] and the triangles of z. */
+void vg_zones_limits(const struct vg_zone_map *z, const double *hmax,
+                     struct vg_zone_limit *limit);
+
 /** Do interfaces divide the surface into zones? */
 int vg_mesh_has_interfaces(const struct vg_mesh *surface);
 

@@ -69,12 +69,12 @@ json_t *vg_report_zones_json(const struct vg_mesh *m,
   json_t *list = json_array();
 
   for (size_t i = 0; r && i < m->n_zone; i++)
-    json_array_append_new(list,
-                          json_pack("{s:i s:o s:s s:I s:f s:f}", "id",
-                                    (int)m->zone[i].id, "name",
-                                    vg_text_json(m->zone[i].name), "kind",
-                                    vg_zone_kind_word[m->zone[i].kind], "cells",
-                                    (json_int_t)r[i].n_cell, "volume",
-                                    r[i].volume, "angle_min", r[i].angle_min));
+    json_array_append_new(
+      list, json_pack("{s:i s:o s:s s:I s:f s:f s:f s:f}", "id",
+                      (int)m->zone[i].id, "name", vg_text_json(m->zone[i].name),
+                      "kind", vg_zone_kind_word[m->zone[i].kind], "cells",
+                      (json_int_t)r[i].n_cell, "volume", r[i].volume,
+                      "angle_min", r[i].angle_min, "edge_mean", r[i].edge_mean,
+                      "edge_max", r[i].edge_max));
   return list;
 }

@@ -97,8 +97,7 @@ static void put_mesh(json_t *o, const struct vg_run_report *r)
                                               r->run->sheets));
   if (r->run->zone_report)
     json_object_set_new(o, "zones",
-                        vg_report_zones_json(r->run->slices.boundary,
-                                             r->run->zone_report));
+                        vg_run_zones_json(r->run, &p->boundary.surface));
   json_object_set_new(o, "limits_missed",
                       vg_report_mesh_limits_json(&p->asked, &r->run->judge));
   if (!p->read.is_section) {

@@ -747,6 +747,7 @@ void vg_run_release(struct vg_run *r, int success)
   vg_run_pictures_release(&r->pictures);
   vg_zone_slices_close(r->zones);
   free(r->zone_report);
+  free(r->zone_limit);
   vg_layer_slices_close(r->layers);
   vg_section_mesh_release(&r->section);
   vg_mesh_release(&r->parted_boundary);

@@ -89,6 +89,7 @@ struct vg_run {
   struct vg_zone_slices *zones;
   double periodic_distance; /* Largest distance between periodic points. */
   struct vg_zone_report *zone_report; /* [n_zone] figures of the zones. */
+  struct vg_zone_limit *zone_limit;   /* [n_zone] their requested sizes. */
   struct vg_slices parted; /* With solver partitions, if requested. */
   struct vg_solver_slices *parts;
   struct vg_solver_report solver;
@@ -156,6 +157,13 @@ vg_status vg_run_sort_zones(struct vg_run *r, const struct vg_problem *p,
  * Collective. */
 vg_status vg_run_judge_zones(struct vg_run *r, const struct vg_zone_quality *q,
                              struct vg_error *err);
+
+/** run/stages/run_zones.c: a note for each zone whose cells are larger than its
+ * hmax, and the same as a list. surface: as for vg_run_sort_zones. */
+void vg_run_note_zones(const struct vg_run *r, const struct vg_mesh *surface,
+                       struct vg_notes *notes);
+json_t *vg_run_zones_json(const struct vg_run *r,
+                          const struct vg_mesh *surface);
 
 /** Number of cells of all kinds. */
 uint64_t vg_run_cells(const struct vg_run *r);

@@ -271,7 +271,7 @@ duct two "disk 4 4  0.5 0.25 0.25  0 0.5 0  0 0 0.5" \
   "fin 4 4  0.25 0.25 0.25  0 0.5 0  0 0 0.5"
 vanguard mesh two.stl --flow internal --baffles fin
 exits 1
-says err "both sides of its open sheets, add 7 to --baffles or --sheets"
+says err "both sides of its open sheets, add 7 to --baffles, --sheets or --zone-interfaces"
 lacks err "half"
 valid two --baffles fin,7
 valid two --baffles fin --sheets 7

@@ -71,6 +71,22 @@ done
 [ "$(cat cells0.03)" -gt "$((2 * $(cat cells0)))" ] ||
   fail "hmax of a zone has no effect"
 
+# A size that is not met, and one that is.
+for h in 1e-9 0.25; do
+  printf 'z\n\nzones\nname x y z hmax\ncore 0.5 0.5 0.5 %s\n' $h >two.deck
+  vanguard mesh two.stl --flow internal --zone-interfaces rot,in \
+    --write b8.ugrid --out size$h
+  exits 0
+  cp out out$h
+done
+cp out1e-9 out
+says out "zone core requests a size of 1e-09, but its edges have a mean length"
+says out "next to it has edges of up to 0."
+grep -q '"hmax_missed": true' size1e-9/two.report.json || fail "no hmax_missed"
+cp out0.25 out
+lacks out "requests a size"
+grep -q '"hmax_missed": false' size0.25/two.report.json || fail "hmax_missed"
+
 # A zone that walls and a plane enclose; layers on the walls end at the plane.
 valid mid --zone-interfaces mid --walls 'w*' --first 0.004 --cells mixed
 says out "0.5 "
@@ -90,6 +106,20 @@ valid two --zone-interfaces rot,in
 says out "connected regions: 2"
 says out "  far"
 says out "  core"
+
+# Names without the table; the interface becomes a wall.
+rm two.deck
+vanguard mesh two.stl --flow internal --zone-interfaces rot,in --write b8.ugrid \
+  --out names
+exits 0
+says out "zone 2 rot: fluid"
+says out "zone 3 in: fluid"
+printf 'z\n\nzones\nname x y z kind\ncore 0.5 0.5 0.5 solid\n' >two.deck
+vanguard mesh two.stl --flow internal --zone-interfaces rot,in --out solid \
+  --write foam --quiet
+exits 0
+grep -A2 '^ *in$' solid/two.openfoam/constant/polyMesh/boundary >out
+says out "wall;"
 
 # --- ranks, threads, decompositions, a stop --------------------------------------
 
@@ -302,6 +332,12 @@ exits 1
 says err "none of these formats holds sheets"
 absent no
 
+# Two sides of the box are interfaces.
+vanguard mesh one.stl --flow internal --zone-interfaces 'w1,w3,rot' --quiet --out no
+exits 1
+says err "These patches are inner surfaces and close nothing: "
+says err "remove it from the list of baffles, sheets or zone_interfaces"
+
 # A damaged sidecar.
 sed 's/^zone 2 rotating/zone 2 warm/' all/two.sheets >back.sheets
 vanguard check back.lb8.ugrid
@@ -316,3 +352,8 @@ awk '/^zone 1/ { n = $4; next } /^zone 2/ { $4 += n } { print }' all/two.sheets 
 vanguard check back.lb8.ugrid
 exits 1
 says err "triangles of interfaces have one zone on both sides"
+awk '$1 == "interface" && !n { $3--; n = 1; print; next }
+  n == 1 { n = 2; next } { print }' all/two.sheets >back.sheets
+vanguard check back.lb8.ugrid
+exits 1
+says err "1 faces between two zones are not in the interface between them"
