@@ -421,5 +421,5 @@ void vg_adapt_release(struct vg_adapt *a)
   free(a->home);
   free(a->stem);
   json_decref(a->settings);
-  *a = (struct vg_adapt){ NULL };
+  *a = (struct vg_adapt){ .o = NULL };
 }

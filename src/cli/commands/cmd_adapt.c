@@ -170,7 +170,7 @@ static int show(const struct vg_adapt *a, struct vg_error *err)
 
 static int run(struct arguments *args)
 {
-  struct vg_adapt a = { NULL };
+  struct vg_adapt a = { .o = NULL };
   struct vg_display display;
   struct vg_error err = VG_ERROR_INIT, why = VG_ERROR_INIT;
   char *lock = NULL;

@@ -171,7 +171,7 @@ static vg_status find_surface(const char *stem, char **out,
     }
   }
   /* Other programs write .dat files next to a surface. */
-  if (st >= 0 && !found) found = adjacent(stem, VG_SECTION_SUFFIX + 1);
+  if (st >= 0 && !found) found = adjacent(stem, &VG_SECTION_SUFFIX[1]);
   if (st < 0) {
     free(found);
     return st;
