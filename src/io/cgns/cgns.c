@@ -418,10 +418,10 @@ static vg_status make_words(struct layout *l, struct vg_error *err)
 
   m.patch = vg_calloc(m.n_patch, sizeof *m.patch);
   for (size_t p = 0; m.patch && p < m.n_patch; p++) {
-    const struct vg_zone *z = frame->zone + (p - frame->n_patch);
-
     if (p < frame->n_patch) m.patch[p] = frame->patch[p];
     else {
+      const struct vg_zone *z = &frame->zone[p - frame->n_patch];
+
       m.patch[p].id = z->id;
       snprintf(m.patch[p].name, VG_NAME_MAX, *z->name ? "%s" : "zone", z->name);
     }
