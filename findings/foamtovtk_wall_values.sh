@@ -10,8 +10,8 @@
 # those. At a symmetry plane the skin friction is halved.
 #
 # Output seen, for a field of 1 on the wall:
-#   internal.vtu: beside a patch 0.255, beside a symmetry plane 0.5, inside 1
-#   floor.vtp:    beside a patch 1, beside a symmetry plane 1, inside 1
+#   internal.vtu: inside 1, next to a patch 0.255, next to a symmetry plane 0.5
+#   floor.vtp:    inside 1, next to a patch 1, next to a symmetry plane 1
 . "$(dirname "$(realpath "$0")")/install.sh"
 install openfoam=1912.200626-1+b1 \
   python3-vtk9=9.1.0+really9.1.0+dfsg2-5+deb12u1
@@ -62,8 +62,8 @@ reader.SetFileName(sys.argv[1])
 reader.Update()
 grid = reader.GetOutput()
 shear = grid.GetPointData().GetArray("shear")
-at = {(2, 0, 0.5): "inside", (0, 0, 0.5): "beside a patch",
-      (2, 0, 0): "beside a symmetry plane"}
+at = {(2, 0, 0.5): "inside", (0, 0, 0.5): "next to a patch",
+      (2, 0, 0): "next to a symmetry plane"}
 print(", ".join(sorted(f"{at[grid.GetPoint(i)]} {shear.GetValue(i):.3g}"
                        for i in range(grid.GetNumberOfPoints())
                        if grid.GetPoint(i) in at)))
@@ -73,7 +73,7 @@ inner=$(values VTK/*_0/internal.vtu vtkXMLUnstructuredGridReader)
 wall=$(values VTK/*_0/boundary/floor.vtp vtkXMLPolyDataReader)
 echo "internal.vtu: $inner"
 echo "floor.vtp:    $wall"
-[ "$inner" = "beside a patch 0.255, beside a symmetry plane 0.5, inside 1" ] ||
+[ "$inner" = "inside 1, next to a patch 0.255, next to a symmetry plane 0.5" ] ||
   changed "$inner"
-[ "$wall" = "beside a patch 1, beside a symmetry plane 1, inside 1" ] ||
+[ "$wall" = "inside 1, next to a patch 1, next to a symmetry plane 1" ] ||
   changed "$wall"
