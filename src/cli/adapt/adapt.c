@@ -23,14 +23,6 @@
 
 static const char *const step_names[VG_ADAPT_N] = { "metric", "mesh", "solve" };
 
-vg_status vg_adapt_path(const char *folder, const char *name, char **out,
-                        struct vg_error *err)
-{
-  if (asprintf(out, "%s/%s", folder, name) >= 0) return VG_OK;
-  *out = NULL;
-  return vg_fail_memory(err, "a path");
-}
-
 void vg_adapt_attempt(const struct vg_adapt_row *row, int attempt,
                       double *growth, double *aspect_max)
 {
@@ -205,7 +197,7 @@ vg_status vg_adapt_record(const struct vg_adapt *a, struct vg_error *err)
 {
   json_t *o = vg_adapt_json(a);
   char *path = NULL;
-  vg_status st = vg_adapt_path(a->dir, RECORD, &path, err);
+  vg_status st = vg_folder_path(a->dir, RECORD, &path, err);
 
   if (st >= 0) st = vg_json_write(path, o, "the record of the loop", err);
   json_decref(o);
@@ -294,7 +286,7 @@ static vg_status take_record(struct vg_adapt *a, struct vg_error *err)
   const char *other;
   json_error_t why;
   json_t *o;
-  vg_status st = vg_adapt_path(a->dir, RECORD, &path, err);
+  vg_status st = vg_folder_path(a->dir, RECORD, &path, err);
 
   if (st < 0) return st;
   if (access(path, F_OK)) {
@@ -362,7 +354,7 @@ static vg_status make_cycles(struct vg_adapt *a, struct vg_error *err)
     c->requested = c->cells = c->points = c->field_cells = c->angle_min = NAN;
     c->is_done[VG_ADAPT_METRIC] = !vg_adapt_has_metric(a, c);
     snprintf(name, sizeof name, "cycle-%zu", i + 1);
-    st = vg_adapt_path(a->dir, name, &c->dir, err);
+    st = vg_folder_path(a->dir, name, &c->dir, err);
   }
   return st;
 }

@@ -107,8 +107,4 @@ vg_status vg_adapt_write_page(const struct vg_adapt *a, struct vg_error *err);
 void vg_adapt_attempt(const struct vg_adapt_row *row, int attempt,
                       double *growth, double *aspect_max);
 
-/** FOLDER/NAME; owned by the caller. */
-vg_status vg_adapt_path(const char *folder, const char *name, char **out,
-                        struct vg_error *err);
-
 #endif

@@ -39,7 +39,7 @@ static vg_status run(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   vg_status st;
 
   snprintf(file, sizeof file, "%s.log", name);
-  VG_TRY(vg_adapt_path(c->dir, file, &log, err));
+  VG_TRY(vg_folder_path(c->dir, file, &log, err));
   if (!a->o->quiet)
     fprintf(stderr, "cycle %d of %zu: %s\n", c->number, a->n, name);
   VG_TRY(vg_words_run(w, step == VG_ADAPT_SOLVE ? a->home : NULL, log, out,
@@ -88,7 +88,7 @@ static vg_status add_path(struct vg_words *w, const char *option,
                           struct vg_error *err)
 {
   char *path = NULL;
-  vg_status st = vg_adapt_path(folder, file, &path, err);
+  vg_status st = vg_folder_path(folder, file, &path, err);
 
   if (st >= 0 && option) st = vg_words_add(w, option, err);
   if (st >= 0) return vg_words_take(w, path, err);
@@ -101,7 +101,7 @@ static int has_file(const char *folder, const char *file)
   char *path = NULL;
   int there;
 
-  if (vg_adapt_path(folder, file, &path, NULL) < 0) return 0;
+  if (vg_folder_path(folder, file, &path, NULL) < 0) return 0;
   there = !access(path, R_OK);
   free(path);
   return there;
@@ -246,7 +246,7 @@ static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
   json_t *o;
 
   snprintf(name, sizeof name, "%.250s.report.json", a->stem);
-  if (vg_adapt_path(c->dir, name, &path, NULL) < 0) return;
+  if (vg_folder_path(c->dir, name, &path, NULL) < 0) return;
   o = json_load_file(path, 0, NULL);
   field = json_object_get(o, "plane") ? "plane"
         : json_object_get(o, "field") ? "field"
@@ -279,7 +279,7 @@ static vg_status try_mesh(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   char *answer = NULL;
   vg_status st;
 
-  VG_TRY(vg_adapt_path(c->dir, "mesh.json", &answer, err));
+  VG_TRY(vg_folder_path(c->dir, "mesh.json", &answer, err));
   VG_TRY(mesh_line(a, c, &w, err));
   VG_TRY(
     run(a, c, VG_ADAPT_MESH, &w, "mesh", answer, &c->exit_status, note, err));
@@ -383,7 +383,7 @@ static vg_status read_outputs(struct vg_adapt_cycle *c, struct vg_error *err)
 
   c->n_output = 0;
   if (!has_file(c->dir, "outputs.csv")) return VG_OK;
-  VG_TRY(vg_adapt_path(c->dir, "outputs.csv", &path, err));
+  VG_TRY(vg_folder_path(c->dir, "outputs.csv", &path, err));
   VG_TRY(vg_input_open(path, &in, err));
   while (st >= 0 && vg_input_line(&in, &text, &n))
     st = take_output(&in, text, n, c, err);
@@ -411,7 +411,7 @@ static void remove_results(const struct vg_adapt_cycle *c)
   memcpy(name + 1, solution_names, sizeof solution_names);
   memcpy(name + 1 + N_SOLUTION, wall_names, sizeof wall_names);
   for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
-    if (vg_adapt_path(c->dir, name[i], &path, NULL) < 0) continue;
+    if (vg_folder_path(c->dir, name[i], &path, NULL) < 0) continue;
     nftw(path, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     free(path);
   }

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "cli/plot/svg.h"
 #include "io/stream/csv.h"
+#include "run/common/folder.h"
 #include "run/common/text.h"
 
 /* Names of all output quantities, in the order in which they first occur. */
@@ -124,7 +125,7 @@ vg_status vg_adapt_write_csv(const struct vg_adapt *a, struct vg_error *err)
   char *path = NULL;
   vg_status st;
 
-  VG_TRY(vg_adapt_path(a->dir, "adapt.csv", &path, err));
+  VG_TRY(vg_folder_path(a->dir, "adapt.csv", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
   vg_output_text(&out, "cycle,requested_cells,cells,points,field_cells,"
                        "angle_min,attempt,metric_seconds,mesh_seconds,"
@@ -303,7 +304,7 @@ static vg_status put_figure(struct vg_output *to, const struct vg_adapt *a,
   char *path = NULL;
   vg_status st;
 
-  VG_TRY(vg_adapt_path(a->dir, "adapt.svg", &path, err));
+  VG_TRY(vg_folder_path(a->dir, "adapt.svg", &path, err));
   VG_TRY(plot(a, name, path, err));
   VG_TRY(vg_input_open(path, &in, err));
   vg_output_text(to, "<figure>");
@@ -347,7 +348,7 @@ vg_status vg_adapt_write_page(const struct vg_adapt *a, struct vg_error *err)
   char *path = NULL;
   vg_status st;
 
-  VG_TRY(vg_adapt_path(a->dir, "adapt.html", &path, err));
+  VG_TRY(vg_folder_path(a->dir, "adapt.html", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
   VG_TRY(put_page(&out, a, err));
   st = vg_output_commit(&out, err);

@@ -11,6 +11,7 @@
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
 #include "io/stream/stream.h"
+#include "run/common/folder.h"
 #include "run/common/json_file.h"
 #include "run/common/progress.h"
 #include "run/common/text.h"
@@ -140,7 +141,7 @@ static vg_status claim(const struct vg_adapt *a, char **path, int *fd,
                        struct vg_error *err)
 {
   char holder[VG_LOCK_HOLDER] = "";
-  vg_status st = vg_adapt_path(a->dir, "adapt.lock", path, err);
+  vg_status st = vg_folder_path(a->dir, "adapt.lock", path, err);
 
   if (st < 0) return st;
   st = vg_lock_take(AT_FDCWD, *path, fd, holder);
@@ -260,12 +261,7 @@ int vg_cmd_adapt(int argc, char **argv)
   };
   struct arguments a = { .o = { .dir = "adapt", .ranks = 1 } };
 
-  for (int i = 1; i < argc && !a.o.extra; i++) {
-    if (strcmp(argv[i], "--") != 0) continue;
-    a.o.extra = argv + i + 1;
-    a.o.n_extra = argc - i - 1;
-    argc = i;
-  }
+  a.o.n_extra = vg_cli_split(&argc, argv, &a.o.extra);
   vg_cli_parse(&argp, argc, argv, &a);
   return run(&a);
 }

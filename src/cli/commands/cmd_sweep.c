@@ -433,12 +433,7 @@ int vg_cmd_sweep(int argc, char **argv)
   struct vg_sweep_options o = { .dir = "sweep" };
   int status;
 
-  for (int i = 1; i < argc && !o.extra; i++) {
-    if (strcmp(argv[i], "--") != 0) continue;
-    o.extra = argv + i + 1;
-    o.n_extra = argc - i - 1;
-    argc = i;
-  }
+  o.n_extra = vg_cli_split(&argc, argv, &o.extra);
   vg_cli_parse(&argp, argc, argv, &o);
   status = run(&o);
   for (int k = 0; k < N_LIST; k++) vg_range_release(list_of(&o, k));

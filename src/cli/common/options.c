@@ -490,3 +490,16 @@ vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
   if (st == VG_ERR_INPUT && err) err->code = VG_ERR_USAGE;
   return st == VG_ERR_INPUT ? VG_ERR_USAGE : st;
 }
+
+int vg_cli_split(int *argc, char **argv, char ***rest)
+{
+  for (int i = 1; i < *argc; i++) {
+    const int n = *argc - i - 1;
+
+    if (strcmp(argv[i], "--") != 0) continue;
+    *rest = argv + i + 1;
+    *argc = i;
+    return n;
+  }
+  return 0;
+}

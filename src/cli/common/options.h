@@ -12,6 +12,10 @@
 /** argp_parse with exit status 2 for wrong usage. */
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
 
+/** Splits the words after the first "--" off a command line: reduces *argc to
+ * those before it, and returns their number, with *rest the first of them. */
+int vg_cli_split(int *argc, char **argv, char ***rest);
+
 /** Parser of a command that takes exactly one argument, called `what` in
  * messages ("file"): handles the argument, which may also be the value of the
  * option 'p', the end of arguments, and the options 'j' (JSON) and 'q' (no

@@ -276,14 +276,6 @@ static void remove_stale(const char *dir)
   if (d) closedir(d);
 }
 
-static vg_status path_in(const struct vg_sweep_case *c, const char *name,
-                         char **path, struct vg_error *err)
-{
-  if (asprintf(path, "%s/%s", c->dir, name) >= 0) return VG_OK;
-  *path = NULL;
-  return vg_fail_memory(err, "a path");
-}
-
 vg_status vg_sweep_run(const struct vg_sweep_options *o,
                        struct vg_sweep_case *c, struct vg_error *err)
 {
@@ -294,8 +286,8 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
   VG_TRY(vg_make_folder(c->dir, err));
   remove_stale(c->dir);
   VG_TRY(command_line(o, c, &w, err));
-  VG_TRY(path_in(c, "run.log", &path, err));
-  if (c->is_planned) VG_TRY(path_in(c, "plan.json", &plan, err));
+  VG_TRY(vg_folder_path(c->dir, "run.log", &path, err));
+  if (c->is_planned) VG_TRY(vg_folder_path(c->dir, "plan.json", &plan, err));
   VG_TRY(vg_words_run(&w, NULL, path, plan, &c->exit_status, &c->wall, err));
   c->is_run = 1;
   /* If a limit on the layers is not met, the mesh is complete nevertheless. */

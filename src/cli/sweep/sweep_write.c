@@ -12,18 +12,11 @@
 #include "io/stream/csv.h"
 #include "partition/model/model.h"
 #include "partition/model/rates.h"
+#include "run/common/folder.h"
 #include "run/common/json_build.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
-
-static vg_status path_of(const struct vg_sweep *s, const char *name, char **out,
-                         struct vg_error *err)
-{
-  if (asprintf(out, "%s/%s", s->o->dir, name) >= 0) return VG_OK;
-  *out = NULL;
-  return vg_fail_memory(err, "a path");
-}
 
 /* --- numbers of a case --------------------------------------------------- */
 
@@ -134,7 +127,7 @@ static vg_status write_csv(const struct vg_sweep *s, struct vg_error *err)
   char *path = NULL;
   vg_status st;
 
-  VG_TRY(path_of(s, "sweep.csv", &path, err));
+  VG_TRY(vg_folder_path(s->o->dir, "sweep.csv", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
   vg_output_text(&out,
                  "case,bisections,leaf_cells,ranks,threads,workers,repeat,"
@@ -231,7 +224,7 @@ static vg_status write_json(const struct vg_sweep *s, struct vg_error *err)
                                   : compared ? "agree"
                                              : "not compared"));
   json_object_set_new(root, "cases", list);
-  VG_TRY(path_of(s, "sweep.json", &path, err));
+  VG_TRY(vg_folder_path(s->o->dir, "sweep.json", &path, err));
   VG_TRY(vg_json_write(path, root, "the table of cases", err));
   if (s->o->json) {
     json_dumpf(root, stdout, JSON_INDENT(2));
@@ -291,7 +284,7 @@ static vg_status draw_phases(const struct vg_sweep *s, struct vg_error *err)
     bar[n].label = s->item[i].name;
     bar[n++].seconds = s->item[i].t.seconds;
   }
-  if (n) VG_TRY(path_of(s, "phases.svg", &path, err));
+  if (n) VG_TRY(vg_folder_path(s->o->dir, "phases.svg", &path, err));
   if (n) VG_TRY(vg_plot_phases(path, s->o->project, n, bar, err));
 done:
   free(path);
@@ -517,7 +510,7 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
     };
   snprintf(subtitle, sizeof subtitle, "relative to %s: %s s", base->name,
            seconds);
-  VG_TRY(path_of(s, "speedup.svg", &path, err));
+  VG_TRY(vg_folder_path(s->o->dir, "speedup.svg", &path, err));
   VG_TRY(vg_plot_speedup(path, s->o->project, subtitle, l.n, l.series, err));
 done:
   lines_release(&l);

@@ -46,14 +46,6 @@ static void meet(struct vg_sheet_sides *q, const uint32_t v[3])
   if (t != UINT32_MAX) atomic_fetch_add(&q->cell[t][!is_same], 1);
 }
 
-static const struct {
-  int n_face;
-  const unsigned char (*face)[4];
-} kinds[VG_SLICE_KINDS] = { [VG_SLICE_TET] = { 4, vg_tet_face },
-                            [VG_SLICE_PYR] = { 5, vg_pyr_face },
-                            [VG_SLICE_PRI] = { 5, vg_pri_face },
-                            [VG_SLICE_HEX] = { 0, vg_hex_face } };
-
 void vg_sheet_sides_add(struct vg_sheet_sides *q, const struct vg_slice *slice)
 {
   if (!q) return;
@@ -67,8 +59,8 @@ void vg_sheet_sides_add(struct vg_sheet_sides *q, const struct vg_slice *slice)
         id[k] = slice->id[w[k]];
         n += vg_sheet_table_on(&q->table, id[k]);
       }
-      for (int f = 0; n > 2 && f < kinds[kind].n_face; f++) {
-        const unsigned char *face = kinds[kind].face[f];
+      for (int f = 0; n > 2 && f < vg_cell_faces[kind].n_face; f++) {
+        const unsigned char *face = vg_cell_faces[kind].face[f];
         const uint32_t v[3] = { id[face[0]], id[face[1]], id[face[2]] };
 
         if (face[2] == face[3]) meet(q, v);

@@ -12,14 +12,6 @@
 
 enum { NO_ZONE = UINT32_MAX, SEVERAL = UINT32_MAX - 1 };
 
-static const struct {
-  int width, n_face;
-  const unsigned char (*face)[4];
-} shape[VG_ZONE_KINDS] = { { 4, 4, vg_tet_face },
-                           { 5, 5, vg_pyr_face },
-                           { 6, 5, vg_pri_face },
-                           { 8, 6, vg_hex_face } };
-
 /* A face of a cell, or with the zone NO_ZONE a triangle of an interface. */
 struct face {
   uint32_t node[3]; /* its lowest ones, ascending */
@@ -56,7 +48,7 @@ static void put_face(struct work *w, const uint32_t node[4], uint32_t zone)
 
 static void mark(struct work *w, const uint32_t *cell, int kind, uint32_t zone)
 {
-  for (int k = 0; k < shape[kind].width; k++) {
+  for (int k = 0; k < vg_cell_faces[kind].width; k++) {
     uint32_t *in = &w->in[cell[k]];
 
     if (*in == NO_ZONE) *in = zone;
@@ -67,12 +59,12 @@ static void mark(struct work *w, const uint32_t *cell, int kind, uint32_t zone)
 static void put_faces(struct work *w, const uint32_t *cell, int kind,
                       uint32_t zone)
 {
-  for (int f = 0; f < shape[kind].n_face && !w->is_bad; f++) {
+  for (int f = 0; f < vg_cell_faces[kind].n_face && !w->is_bad; f++) {
     uint32_t node[4];
     int n = 0;
 
     for (int k = 0; k < 4; k++) {
-      node[k] = cell[shape[kind].face[f][k]];
+      node[k] = cell[vg_cell_faces[kind].face[f][k]];
       n += w->in[node[k]] == SEVERAL;
     }
     if (n == 4) put_face(w, node, zone);
@@ -96,7 +88,7 @@ static void each_cell(struct work *w,
 
     for (size_t c = 0; c < n[k] && !w->is_bad; c++) {
       vg_mesh_zone_walk(m, k, c, &zone, &end);
-      visit(w, cell[k] + c * (size_t)shape[k].width, k, (uint32_t)zone);
+      visit(w, cell[k] + c * (size_t)vg_cell_faces[k].width, k, (uint32_t)zone);
     }
   }
 }

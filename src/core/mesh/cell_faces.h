@@ -18,4 +18,13 @@ static const unsigned char vg_hex_face[6][4] = {
   { 2, 6, 7, 3 }, { 0, 1, 2, 3 }, { 4, 7, 6, 5 }
 };
 
+/* The same by kind: tetrahedra, pyramids, prisms, hexahedra. */
+static const struct {
+  int width, n_face; /* nodes and faces of a cell */
+  const unsigned char (*face)[4];
+} vg_cell_faces[4] = { { 4, 4, vg_tet_face },
+                       { 5, 5, vg_pyr_face },
+                       { 6, 5, vg_pri_face },
+                       { 8, 6, vg_hex_face } };
+
 #endif

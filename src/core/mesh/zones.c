@@ -184,24 +184,16 @@ done:
 /* --- interfaces -------------------------------------------------------------
  */
 
-static const struct {
-  int width, n_face;
-  const unsigned char (*face)[4];
-} shape[VG_ZONE_KINDS] = { { 4, 4, vg_tet_face },
-                           { 5, 5, vg_pyr_face },
-                           { 6, 5, vg_pri_face },
-                           { 8, 0, vg_hex_face } };
-
 /* The triangles of sheets that are faces of a cell in zone z. */
 static void meet(const struct vg_sheet_table *t, int kind, const uint32_t *node,
                  uint32_t z, uint32_t (*zone)[2])
 {
   int n = 0;
 
-  for (int k = 0; k < shape[kind].width; k++)
+  for (int k = 0; k < vg_cell_faces[kind].width; k++)
     n += vg_sheet_table_on(t, node[k]);
-  for (int f = 0; n > 2 && f < shape[kind].n_face; f++) {
-    const unsigned char *face = shape[kind].face[f];
+  for (int f = 0; n > 2 && f < vg_cell_faces[kind].n_face; f++) {
+    const unsigned char *face = vg_cell_faces[kind].face[f];
     const uint32_t v[3] = { node[face[0]], node[face[1]], node[face[2]] };
     uint32_t at;
     int is_same;
@@ -232,7 +224,7 @@ vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
 
     for (size_t c = 0; c < n[k]; c++) {
       while (c >= end) end += m->zone[++z].n_cell[k];
-      meet(&t, k, cell[k] + c * (size_t)shape[k].width, z, zone);
+      meet(&t, k, cell[k] + c * (size_t)vg_cell_faces[k].width, z, zone);
     }
   }
   vg_sheet_table_release(&t);

@@ -88,14 +88,6 @@ struct cells {
   size_t n_point, n_cell;
 };
 
-static const struct {
-  int n_face;
-  const unsigned char (*face)[4];
-} kinds[VG_SLICE_KINDS] = { [VG_SLICE_TET] = { 4, vg_tet_face },
-                            [VG_SLICE_PYR] = { 5, vg_pyr_face },
-                            [VG_SLICE_PRI] = { 5, vg_pri_face },
-                            [VG_SLICE_HEX] = { 0, vg_hex_face } };
-
 typedef vg_status (*cell_body)(struct cells *s, int kind, size_t c,
                                const uint32_t *node, struct vg_error *err);
 
@@ -170,8 +162,8 @@ static vg_status meet(struct cells *s, int kind, size_t c, const uint32_t *node,
   int n = 0;
 
   for (int k = 0; k < vg_slice_width[kind]; k++) n += is_on(s, node[k]);
-  for (int i = 0; n > 2 && i < kinds[kind].n_face && st >= 0; i++) {
-    const unsigned char *face = kinds[kind].face[i];
+  for (int i = 0; n > 2 && i < vg_cell_faces[kind].n_face && st >= 0; i++) {
+    const unsigned char *face = vg_cell_faces[kind].face[i];
     uint32_t v[3], t;
     int is_same;
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
+#define _GNU_SOURCE
 #include "run/common/folder.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -54,4 +56,12 @@ vg_status vg_make_folder(const char *path, struct vg_error *err)
   }
   free(part);
   return st;
+}
+
+vg_status vg_folder_path(const char *folder, const char *name, char **out,
+                         struct vg_error *err)
+{
+  if (asprintf(out, "%s/%s", folder, name) >= 0) return VG_OK;
+  *out = NULL;
+  return vg_fail_memory(err, "a path");
 }

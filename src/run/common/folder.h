@@ -10,4 +10,8 @@
  * succeeds if it exists. */
 vg_status vg_make_folder(const char *path, struct vg_error *err);
 
+/** FOLDER/NAME in *out, owned by the caller; NULL on VG_ERR_MEMORY. */
+vg_status vg_folder_path(const char *folder, const char *name, char **out,
+                         struct vg_error *err);
+
 #endif
