@@ -41,7 +41,7 @@ static void check_spans(const struct forest *f, const struct vg_spans *s,
                 (a->bytes_in < sizeof(struct forest_input) + f->ballast));
     assert_true((a->rank == a->home) ==
                 (a->bytes_out < sizeof(struct forest_outcome)));
-    assert_true(a->start <= a->end && a->end <= s->wall + 1);
+    assert_true(a->start <= a->end && a->end <= s->wall);
     assert_true(a->n_cell == (uint64_t)a->estimate);
   }
 }

@@ -251,13 +251,15 @@ done:
   return vg_comm_agree(e->comm, st, err);
 }
 
-/* Gathers all spans of the job on rank 0; other ranks keep their own.
- * Collective. */
+/* Gathers all spans of the job on rank 0; other ranks keep their own. A span's
+ * times are relative to the start of its rank, so the wall time is the largest
+ * of all ranks. Collective. */
 static vg_status gather(struct vg_engine *e, struct vg_error *err)
 {
   struct vg_spans *s = &e->spans;
-  vg_status st = gather_list(e, &s->span, &s->n, &s->cap, sizeof *s->span, err);
+  vg_status st = vg_comm_max(e->comm, 1, &s->wall, err);
 
+  if (!st) st = gather_list(e, &s->span, &s->n, &s->cap, sizeof *s->span, err);
   if (st) return st;
   return gather_list(e, &s->help, &s->n_help, &s->cap_help, sizeof *s->help,
                      err);

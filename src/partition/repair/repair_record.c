@@ -32,7 +32,7 @@ void vg_repair_end(struct vg_span *s, const char *what, size_t number,
 
 /* Collects the lists of all ranks on rank 0; other ranks keep their own. The
  * clocks of two nodes are unrelated, so times are relative to the start of the
- * repairs. */
+ * repairs on their rank. */
 static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
                          double begin, struct vg_spans *own,
                          struct vg_spans *spans, struct vg_error *err)
@@ -65,6 +65,7 @@ vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
   size_t first = spans->n, leaf = 0;
+  double wall = vg_clock() - begin;
   vg_status st = collect(p, comm, begin, own, spans, err);
 
   while (leaf < first && spans->span[leaf].kind != VG_SPAN_LEAF) leaf++;
@@ -76,7 +77,9 @@ vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
     if (s->thread >= spans->n_thread) s->thread = spans->n_thread - 1;
     if (leaf < first) memcpy(s->after, spans->span[leaf].path, sizeof s->after);
   }
-  spans->wall += vg_clock() - begin;
   vg_spans_sort(spans);
-  return vg_comm_agree(comm, st, err);
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) st = vg_comm_max(comm, 1, &wall, err);
+  spans->wall += wall;
+  return st;
 }
