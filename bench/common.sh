@@ -84,6 +84,17 @@ to_measure() {
   work_folder "$1"
 }
 
+# What a published table must name: the program, the commit and the machine.
+about_machine() {
+  local commit
+  commit=$(git -C "$root" rev-parse --short=8 HEAD 2>/dev/null || echo "")
+  [ -z "$commit" ] || git -C "$root" diff --quiet HEAD 2>/dev/null ||
+    commit="$commit with changes"
+  echo "Vanguard $("$build/bin/vanguard" --version | awk 'NR == 1 { print $2 }')" \
+    "(${commit:-no commit}), $(uname -m), $(nproc --all) cores," \
+    "$(date -u +%Y-%m-%d)."
+}
+
 # Print to standard output, and to the file --out.
 say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
 

@@ -221,7 +221,8 @@ one_case() {
 
 [ -z "$out" ] || : > "$out"
 say << END
-Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d); TetGen $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt $threads; threads of Vanguard and HXT: $threads, of TetGen: 1.
+$(about_machine)
+TetGen $(tetgen -h 2>&1 | sed -n 's/.*Version \([0-9.]*\).*/\1/p' | head -1) $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt $threads; threads of Vanguard and HXT: $threads, of TetGen: 1.
 
 | case | mesher | cells | volume stage, s (min-max) | cells/s | / TetGen | / HXT | peak MB | B/cell | dihedral min / max | % < 20 | radius ratio | % edges in [0.7, 1.5] | edge / target | valid | meshcheck |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
