@@ -320,10 +320,8 @@ void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
 /* --- check -----------------------------------------------------------------
  */
 
-/* The surface with the inner triangles at the end, and points of the same place
- * as one. */
-static vg_status combine(const struct vg_boundary *b, struct vg_mesh *out,
-                         struct vg_error *err)
+vg_status vg_boundary_with_inner(const struct vg_boundary *b,
+                                 struct vg_mesh *out, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface, *inner = &b->inner;
   const size_t n_point = m->n_point + inner->n_point;
@@ -491,7 +489,7 @@ vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
 
   assert(b->inner.n_tri);
   vg_display_update(show, "inner surfaces", b->inner.n_tri, 0);
-  VG_TRY(combine(b, &all, err));
+  VG_TRY(vg_boundary_with_inner(b, &all, err));
   VG_TRY(check_together(b, &all, show, err));
   if (b->check.n_defect) goto done;
   st = put_sides(b, &all, &why);

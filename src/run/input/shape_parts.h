@@ -72,6 +72,11 @@ vg_status vg_inner_split(const struct vg_settings *s, struct vg_mesh *m,
 vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_settings *s,
                                  struct vg_error *err);
 
+/** out: b->surface with the triangles of b->inner at the end, and points of the
+ * same place as one. VG_ERR_MEMORY. */
+vg_status vg_boundary_with_inner(const struct vg_boundary *b,
+                                 struct vg_mesh *out, struct vg_error *err);
+
 /** Checks the closed surface together with b->inner, which has triangles, and
  * adds both sides of these to the surface. If there are defects, b->check and
  * b->surface have them, for reports. VG_ERR_GEOMETRY for inner surfaces that

@@ -185,6 +185,71 @@ for way in $ways; do
   says out "8            18            18            18      0.125  plate"
 done
 
+# --- half models -------------------------------------------------------------
+
+# wedge NAME Y: half a wing with a sharp trailing edge, cut at y = 0, and a wake
+# from there, whose inner edge is at Y, as NAME.stl.
+wedge() {
+  awk -v inner="$2" 'function at(s, t, k) {
+      return sprintf("%.17g", (1 - s) * (1 - t) * p[0, k] + s * (1 - t) * p[1, k] \
+                     + s * t * p[2, k] + (1 - s) * t * p[3, k])
+    }
+    function corner(s, t) { print "vertex", at(s, t, 0), at(s, t, 1), at(s, t, 2) }
+    function facet(a, b, c, d, e, f) {
+      print "facet normal 0 0 0\nouter loop"
+      corner(a, b); corner(c, d); corner(e, f)
+      print "endloop\nendfacet"
+    }
+    function sheet(x,   i, j, q) {
+      split(x, q, " ")
+      for (i = 0; i < 12; i++) p[int(i / 3), i % 3] = q[i + 1]
+      for (j = 0; j < 1; j += h) for (i = 0; i < 1; i += h) {
+        facet(i, j, i + h, j, i + h, j + h)
+        facet(i, j, i + h, j + h, i, j + h)
+      }
+    }
+    BEGIN {
+      h = 0.125
+      print "solid wing"
+      sheet("0 0 0  0 1 0  .5 1 .1  .5 0 .1")
+      sheet(".5 0 .1  .5 1 .1  1 1 0  1 0 0")
+      sheet("0 0 0  .5 0 -.1  .5 1 -.1  0 1 0")
+      sheet(".5 0 -.1  1 0 0  1 1 0  .5 1 -.1")
+      sheet("0 1 0  .5 1 -.1  1 1 0  .5 1 .1")
+      print "endsolid wing\nsolid wake"
+      sheet("1 " inner " 0  2 " inner " 0  2 1 0  1 1 0")
+      print "endsolid wake"
+    }' >"$1.stl"
+}
+
+# half OPTION...: a mesh with a symmetry plane that is cut along the wake.
+half() {
+  vanguard mesh wedge.stl --half y --farfield-lengths 5 --quiet \
+    --write b8.ugrid --out half "$@"
+  exits 0
+  vanguard check half/wedge.b8.ugrid
+  exits 0
+  says out "valid"
+  says out "6662"
+}
+
+wedge wedge 0
+half --sheets wake
+says out "2           128           128           128          1  wake"
+half --baffles wake
+says out "wake_back"
+for cells in tets mixed; do
+  half --sheets wake --walls wing,wake --first 0.002 --cells $cells
+  says out "2           128           128           128          1  wake"
+  lacks out "coincident"
+done
+wedge beyond -0.125
+vanguard mesh beyond.stl --half y --sheets wake --out no
+exits 1
+says err "an inner surface reaches beyond the symmetry plane y = 0 at ("
+says err "-0.125, 0); cut it off at the plane"
+absent no/beyond.b8.ugrid
+
 # --- formats -----------------------------------------------------------------
 
 vanguard mesh both.stl --flow internal --quiet --sheets fin,plate --hmax 0.12 \
