@@ -6,8 +6,8 @@
 
 The trailing edge consists of the edges whose two triangles have nearly opposite
 normals. The sheet begins with these edges and their points, and continues in the
-plane of x and z at the given angle, with rows that become longer by a tenth. OUT.stl
-has the solids wing and wake.
+plane of x and z at the given angle, with rows that become longer by a tenth, up to
+three times the mean edge. OUT.stl has the solids wing and wake.
 """
 import argparse
 import collections
@@ -64,11 +64,10 @@ def trailing_edge(point, triangle):
 
 def rows(edge, length):
     """Distances of the rows from the trailing edge."""
-    n, sum_of = 1, edge
-    while sum_of < length:
-        sum_of += edge * 1.1**n
-        n += 1
-    return [length / sum_of * edge * (1.1**k - 1) / 0.1 for k in range(n + 1)]
+    row = [0]
+    while row[-1] < length:
+        row.append(row[-1] + edge * min(1.1**len(row), 3))
+    return [length / row[-1] * x for x in row]
 
 
 def main():

@@ -20,14 +20,19 @@ struct work {
   uint32_t *point; /* [sheets->n_point] of m, for points in the plane */
 };
 
-static vg_status refuse(const struct work *w, const double *x, const char *why,
+/* Refuses triangle t of the sheets at point x. */
+static vg_status refuse(const struct work *w, size_t t, const double *x,
+                        const char *why, const char *remedy,
                         struct vg_error *err)
 {
+  const struct vg_patch *p = &w->m->patch[w->sheets->tri_patch[t]];
+  const char axis = "xyz"[w->plane->axis];
+
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "an inner surface %s the symmetry plane %c = %.9g at (%.9g, "
-                 "%.9g, %.9g); cut it off at the plane",
-                 why, "xyz"[w->plane->axis], w -> plane -> at, x[0], x[1],
-                 x[2]);
+                 "patch %d%s%s, an inner surface, %s the symmetry plane %c = "
+                 "%.9g at (%.9g, %.9g, %.9g); %s",
+                 (int)p->id, *p->name ? " " : "", p->name, why, axis,
+                 w->plane->at, x[0], x[1], x[2], remedy);
 }
 
 /* Finds the points in the plane, and moves them exactly into it. */
@@ -40,7 +45,9 @@ static vg_status find_points(struct work *w, struct vg_error *err)
     double *x = w->sheets->point[v];
     const double off = p->side ? x[p->axis] - p->at : p->at - x[p->axis];
 
-    if (off < -p->tolerance) return refuse(w, x, "reaches beyond", err);
+    if (off < -p->tolerance)
+      return refuse(w, k / 3, x, "reaches beyond", "cut it off at the plane",
+                    err);
     if (off > p->tolerance) continue;
     x[p->axis] = p->at;
     w->on[v] = 1;
@@ -63,7 +70,11 @@ static vg_status find_edges(struct work *w, struct vg_error *err)
     const uint32_t *v = w->sheets->tri[t];
 
     if (w->on[v[0]] && w->on[v[1]] && w->on[v[2]])
-      return refuse(w, w->sheets->point[v[0]], "has a triangle in", err);
+      return refuse(w, t, w->sheets->point[v[0]], "has a triangle in",
+                    "if it bounds the fluid, remove it from the list of "
+                    "baffles, sheets or zone_interfaces; otherwise cut it off "
+                    "at the plane",
+                    err);
     for (int k = 0; k < 3; k++) {
       const uint32_t a = v[k], b = v[(k + 1) % 3];
 

@@ -17,8 +17,8 @@ struct vg_slit_plane {
  *
  * @param m       gets the points of these edges that are at no point of the
  *                border
- * @param sheets  any triangles; points within the tolerance are moved into the
- *                plane
+ * @param sheets  any triangles of patches of m; points within the tolerance are
+ * moved into the plane
  * @param border  in/out: closed loops in the plane
  * VG_ERR_GEOMETRY, with the place, for a sheet that crosses the plane or has a
  * triangle in it. VG_ERR_MEMORY. O(n log n). */

@@ -375,6 +375,14 @@ exits 1
 says err "These patches are inner surfaces and close nothing: "
 says err "remove it from the list of baffles, sheets or zone_interfaces"
 
+# One side of the box, without which it looks like a half model.
+for flow in internal external; do
+  vanguard mesh one.stl --flow $flow --zone-interfaces 'w1,rot' --quiet --out no
+  exits 1
+  says err "patch 1 w1, an inner surface, has a triangle in the symmetry plane"
+  says err "if it bounds the fluid, remove it from the list of baffles, sheets or"
+done
+
 # A damaged sidecar.
 sed 's/^zone 2 rotating/zone 2 warm/' all/two.sheets >back.sheets
 vanguard check back.lb8.ugrid
