@@ -248,7 +248,7 @@ vanguard mesh beyond.stl --half y --sheets wake --out no
 exits 1
 says err "2 wake, an inner surface, reaches beyond the symmetry plane y = 0 at ("
 says err "-0.125, 0); cut it off at the plane"
-absent no/beyond.b8.ugrid
+absent no
 
 # --- formats -----------------------------------------------------------------
 
