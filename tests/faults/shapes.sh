@@ -17,7 +17,16 @@ finned() {
   printf 'f %s\n' "1 3 7" "1 7 8"
 }
 
-# The same around a smaller one.
+# Half of an octahedron, open at y = 0, with a fin that ends there.
+half_finned() {
+  printf 'v %s\n' "1 0 0" "-1 0 0" "0 1 0" "0 0 1" "0 0 -1" "1.5 0 0" "1.5 0.5 0"
+  echo "g body"
+  printf 'f %s\n' "1 3 4" "3 2 4" "3 1 5" "2 3 5"
+  echo "g fin"
+  printf 'f %s\n' "1 6 7" "1 7 3"
+}
+
+# An octahedron around a smaller one.
 nested() {
   octahedron
   printf 'v %s\n' "0.4 0 0" "-0.4 0 0" "0 0.4 0" "0 -0.4 0" "0 0 0.4" "0 0 -0.4"

@@ -18,6 +18,7 @@
 #include "core/judge/quality.h"
 #include "core/judge/zone_quality.h"
 #include "core/mesh/cell_faces.h"
+#include "core/mesh/copies.h"
 #include "core/mesh/sheets.h"
 #include "core/sides/inner.h"
 #include "core/sides/zone_cells.h"
@@ -179,7 +180,9 @@ static void make_surface(struct scene *s)
   free(list);
 }
 
-static vg_status double_faces(struct vg_mesh *m, struct vg_error *err)
+/* is_split: with points of its own on each side of an interface. */
+static vg_status double_faces(struct vg_mesh *m, int is_split,
+                              struct vg_error *err)
 {
   const uint8_t is_inner[3] = { 0, 1, 0 };
   const uint32_t back[3] = { 0, 2, 0 };
@@ -190,12 +193,29 @@ static vg_status double_faces(struct vg_mesh *m, struct vg_error *err)
   for (int i = 1; i < 3; i++) {
     m->patch[i].inner = i;
     m->patch[i].is_sheet = m->patch[i].is_interface = 1;
+    m->patch[i].is_split = is_split;
   }
   st = vg_inner_double(m, is_inner, back, &r, err);
   if (st < 0) return st;
   assert_int_equal(r.n_cut, 0);
-  assert_int_equal(m->n_point, POINTS);
+  if (!is_split) assert_int_equal(m->n_point, POINTS);
   return VG_OK;
+}
+
+/* Sides with points of their own have the points of the others when these are
+ * joined. split: the surface before its faces were doubled */
+static void join_sides(const struct scene *s, struct vg_mesh *split)
+{
+  const struct vg_mesh *m = &s->surface;
+  uint32_t *same;
+
+  assert_int_equal(double_faces(split, 1, NULL), VG_OK);
+  assert_int_equal(vg_mesh_joined_points(split, &same, NULL), VG_OK);
+  assert_int_equal(split->n_tri, m->n_tri);
+  assert_true(split->n_point > POINTS || m->n_tri == 12 * N * N);
+  for (size_t k = 0; k < 3 * m->n_tri; k++)
+    assert_int_equal(same[split->tri[k / 3][k % 3]], m->tri[k / 3][k % 3]);
+  free(same);
 }
 
 /* --- the mesh in slices ------------------------------------------------------
@@ -353,7 +373,7 @@ static size_t run(uint64_t number)
   struct served *v = vg_calloc(1, sizeof *v);
   struct vg_zone_map map = VG_ZONE_MAP_INIT;
   struct vg_zone_slices *keep = NULL;
-  struct vg_mesh whole = VG_MESH_INIT;
+  struct vg_mesh whole = VG_MESH_INIT, split = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_slices slices, sorted;
   size_t n = 0;
@@ -362,7 +382,9 @@ static size_t run(uint64_t number)
   fill_cube(&s->cells);
   choose_labels(s);
   make_surface(s);
-  if (double_faces(&s->surface, &err) == VG_OK) {
+  assert_int_equal(vg_mesh_copy(&split, &s->surface, NULL), VG_OK);
+  if (double_faces(&s->surface, 0, &err) == VG_OK) {
+    join_sides(s, &split);
     assert_int_equal(vg_zone_map_new(&s->surface, &map, &err), VG_OK);
     serve(s, v, &slices);
     assert_int_equal(vg_zone_slices_open(NULL, &map, &slices, 1 + (int)draw(3),
@@ -376,6 +398,7 @@ static size_t run(uint64_t number)
   vg_zone_slices_close(keep);
   vg_zone_map_release(&map);
   vg_mesh_release(&whole);
+  vg_mesh_release(&split);
   vg_mesh_release(&v->boundary);
   vg_mesh_release(&s->surface);
   vg_mesh_release(&s->cells);
@@ -455,7 +478,7 @@ static void open_interface(void **state)
               (m->n_tri - t) * sizeof *m->tri_patch);
       break;
     }
-  assert_int_equal(double_faces(m, &err), VG_OK);
+  assert_int_equal(double_faces(m, 0, &err), VG_OK);
   assert_int_equal(vg_zone_map_new(m, &map, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "interface 2 face encloses no zone"));
   assert_non_null(strstr(err.text, "3 edges of interfaces are free"));

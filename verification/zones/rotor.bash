@@ -26,15 +26,11 @@ boundaryField
 END
 }
 
-rotor_settings() {
-  dictionary constant/transportProperties <<'END'
-transportModel Newtonian;
-nu 0.005;
-END
+# flow_settings NU: simpleFoam for a laminar flow, 100 iterations.
+flow_settings() {
+  printf 'transportModel Newtonian;\nnu %s;\n' "$1" |
+    dictionary constant/transportProperties
   dictionary constant/turbulenceProperties <<<'simulationType laminar;'
-  # The file of docs/guide/zones.md.
-  sed -n '/MRFProperties/,/^The steady/s/^    //p' "$here/../../docs/guide/zones.md" |
-    dictionary constant/MRFProperties
   dictionary system/controlDict <<'END'
 application simpleFoam;
 startFrom startTime;
@@ -68,6 +64,16 @@ relaxationFactors { equations { U 0.8; } }
 END
 }
 
+# The name of each field with its first and its last initial residual.
+residuals() {
+  awk '/Initial residual/ { sub(",", "", $3); sub(",", "", $8)
+         if (!($4 in first)) first[$4] = $8; last[$4] = $8 }
+       END { for (f in last) print f, first[f], last[f] }' simpleFoam.log |
+    sed 's/,//g' | sort | tee residuals | sed 's/^/  residual of /'
+  [ "$(wc -l <residuals)" = 4 ] || bad "the fields"
+  awk '$3 > 1e-3 { exit 1 }' residuals || bad "the residuals are above 1e-3"
+}
+
 rotor() {
   "$vanguard" demo rotor --cells 30000 --out demo >/dev/null || bad "the demo"
   "$vanguard" mesh -q -p demo/rotor --write foam --out mesh >/dev/null ||
@@ -75,15 +81,12 @@ rotor() {
   cd mesh/rotor.openfoam || return
   sound
   rotor_fields
-  rotor_settings
+  flow_settings 0.005
+  # The file of docs/guide/zones.md.
+  sed -n '/MRFProperties/,/^The steady/s/^    //p' "$here/../../docs/guide/zones.md" |
+    dictionary constant/MRFProperties
   run 600 simpleFoam || return
-  # The name of each field with its first and its last initial residual.
-  awk '/Initial residual/ { sub(",", "", $3); sub(",", "", $8)
-         if (!($4 in first)) first[$4] = $8; last[$4] = $8 }
-       END { for (f in last) print f, first[f], last[f] }' simpleFoam.log |
-    sed 's/,//g' | sort | tee residuals | sed 's/^/  residual of /'
-  [ "$(wc -l <residuals)" = 4 ] || bad "the fields"
-  awk '$3 > 1e-3 { exit 1 }' residuals || bad "the residuals are above 1e-3"
+  residuals
   # The speed of the blades, of which the tips are at the radius 0.22.
   awk '/blades/ { on = 1 } on && /^\(/ && NF == 3 {
          gsub(/[()]/, ""); v = sqrt($2 * $2 + $3 * $3); if (v > most) most = v }

@@ -1,13 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-3.0-or-later
-# verification/zones/run.sh: do solvers of OpenFOAM run on the zones of a mesh?
+# verification/zones/run.sh: do solvers of OpenFOAM run on the zones and inner
+# surfaces of a mesh?
 #
-# usage: verification/zones/run.sh [--vanguard PROGRAM] [--work DIR] [NAME...]
+# usage: verification/zones/run.sh [--vanguard PROGRAM] [--data DIR] [--work DIR]
+#                                  [NAME...]
 #   rotor  `vanguard demo rotor` in simpleFoam, with the MRFProperties of
 #          docs/guide/zones.md: the initial residuals fall below 1e-3, and the
 #          blades turn
 #   fins   `vanguard demo fins` in splitMeshRegions and chtMultiRegionFoam: the
 #          100 W of the solid arrive in the fluid
+#   baffle a duct with a baffle and a sheet, both with layers, in simpleFoam: the
+#          initial residuals fall below 1e-3, and all of the flow passes the
+#          sheet
+#   wake   half of the ONERA M6 (--data) with its wake as a sheet: layers on both
 # checkMesh finds no fault in the meshes, and none in the two regions of fins.
 # Without NAME: all of them.
 # Exit status: 0 all passed, 1 a failure, 2 usage, 77 no OpenFOAM.
@@ -15,20 +21,20 @@ set -uo pipefail
 export LC_ALL=C
 
 here=$(cd "$(dirname "$0")" && pwd)
-vanguard=$here/../../build/release/bin/vanguard work=''
+vanguard=$here/../../build/release/bin/vanguard data='' work=''
 usage() { sed -n '2,/^# Exit status/p' "$0" | sed 's/^# \{0,1\}//'; }
 while [ $# -gt 0 ]; do
   case $1 in
-    --vanguard|--work)
+    --vanguard|--data|--work)
       [ $# -gt 1 ] || { usage >&2; exit 2; }
       declare "${1#--}=$2"
       shift 2 ;;
     -h|--help) usage; exit 0 ;;
-    rotor|fins) break ;;
+    rotor|fins|baffle|wake) break ;;
     *) usage >&2; exit 2 ;;
   esac
 done
-[ $# -gt 0 ] || set -- rotor fins
+[ $# -gt 0 ] || set -- rotor fins baffle wake
 
 if ! command -v checkMesh >/dev/null; then
   echo "SKIP: no OpenFOAM (checkMesh is not in PATH)"
@@ -89,6 +95,10 @@ sound() {
 . "$here/rotor.bash"
 # shellcheck source=verification/zones/fins.bash
 . "$here/fins.bash"
+# shellcheck source=verification/zones/baffle.bash
+. "$here/baffle.bash"
+# shellcheck source=verification/zones/wake.bash
+. "$here/wake.bash"
 for name; do
   echo "== $name"
   cd "$work" || exit 1

@@ -342,6 +342,15 @@ done:
   return st;
 }
 
+/* Open edges of a half model are no defects: its symmetry plane closes them. */
+static int has_defects(const struct vg_boundary *b)
+{
+  const int is_half = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis >= 0;
+
+  return b->check.n_defect >
+         (is_half ? b->check.count[VG_DEFECT_OPEN_EDGE] : 0);
+}
+
 /* Write all faces with a defect to STEM.defects.vtu. */
 static void show_defects(struct run *r, const struct arguments *a)
 {
@@ -349,7 +358,7 @@ static void show_defects(struct run *r, const struct arguments *a)
   struct vg_error err = VG_ERROR_INIT;
   char *path;
 
-  if (!b->check.n_defect || !r->outputs.dir) return;
+  if (!has_defects(b) || !r->outputs.dir) return;
   if (!a->json) print_surface(stdout, r);
   if (vg_log()) print_surface(vg_log(), r);
   path = vg_outputs_final(&r->outputs, "defects.vtu");
@@ -397,7 +406,7 @@ static int report_failure(struct run *r, const struct arguments *a,
                           const struct vg_error *err)
 {
   if (r->mesh.rank) return vg_cli_exit(err);
-  show_defects(r, a);
+  if (err->code != VG_ERR_MEMORY) show_defects(r, a);
   if (a->json) print_json(r, 0, err);
   return vg_cli_fail(err);
 }

@@ -15,6 +15,7 @@
 #include "core/domain/mach.h"
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
+#include "core/domain/slits.h"
 #include "core/domain/symmetry.h"
 #include "core/geometry/volume.h"
 #include "core/mesh/mesh_defects.h"
@@ -386,6 +387,8 @@ static vg_status add_symmetry(struct domain *d, struct vg_border *border,
                               struct vg_error *err)
 {
   const struct vg_size_function law = { domain_size, d, d->farfield->stop };
+  const struct vg_slit_plane plane = { d->axis, d->side, d->at,
+                                       VG_PLANE_TOLERANCE * d->length };
   struct vg_error inner = VG_ERROR_INIT;
   uint32_t patch = 0;
   vg_status st;
@@ -393,6 +396,8 @@ static vg_status add_symmetry(struct domain *d, struct vg_border *border,
   VG_TRY(add_patch(&d->m, "symmetry", 1, 6661 + d->axis, &patch, err));
   for (size_t i = 0; i < d->open.n; i++)
     VG_TRY(vg_border_add(border, d->open.edge[i][0], d->open.edge[i][1], err));
+  if (d->farfield->sheets)
+    VG_TRY(vg_add_slits(&d->m, d->farfield->sheets, &plane, border, err));
   st = vg_planar_patch(&d->m, border->n, (const uint32_t(*)[2])border->edge,
                        &law, patch, &inner);
   if (st < 0)

@@ -92,6 +92,9 @@ struct vg_farfield {
   double spacing;      /* Edge length on the farfield; 0: from the growth of the
                           sizing field. */
   struct vg_stop stop; /* Polled regularly. */
+  struct vg_mesh *sheets; /* Inner surfaces along which the symmetry plane is
+                             cut; their points near it are moved into it.
+                             NULL: none. */
   struct vg_mach_extent extent; /* Used by VG_FARFIELD_MACH, with `centre` as a
                                    point of the axis. */
 };

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/table.h"
 #include "base/tri_key.h"
+#include "base/union_find.h"
 
 struct copies {
   const struct vg_mesh *m;
@@ -120,6 +121,53 @@ vg_status vg_mesh_inner_pairs(const struct vg_mesh *m, const uint32_t *first,
     }
   vg_table_release(&table);
   return VG_OK;
+}
+
+/* Unites the corners of triangles t and u, the sides of a sheet. */
+static void join_corners(const struct vg_mesh *m, const uint32_t *first,
+                         size_t t, size_t u, uint32_t *same)
+{
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 3; j++)
+      if (first[m->tri[t][k]] == first[m->tri[u][j]])
+        vg_union(same, m->tri[t][k], m->tri[u][j]);
+}
+
+static int is_split_front(const struct vg_patch *p)
+{
+  return p->is_split && p->inner == VG_INNER_FRONT;
+}
+
+vg_status vg_mesh_joined_points(const struct vg_mesh *m, uint32_t **same,
+                                struct vg_error *err)
+{
+  uint32_t *first = NULL, *other = NULL;
+  int has = 0;
+  vg_status st;
+
+  *same = NULL;
+  for (size_t i = 0; i < m->n_patch; i++) has |= is_split_front(&m->patch[i]);
+  if (!has) return VG_OK;
+  VG_TRY(vg_mesh_inner_points(m, &first, err));
+  other = vg_alloc(m->n_tri, sizeof *other);
+  *same = vg_alloc(m->n_point, sizeof **same);
+  if (!other || !*same) VG_TRY(vg_fail_memory(err, "the sheets"));
+  VG_TRY(vg_mesh_inner_pairs(m, first, other, err));
+  for (uint32_t p = 0; p < m->n_point; p++) (*same)[p] = p;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    if (!is_split_front(&m->patch[m->tri_patch[t]])) continue;
+    assert(other[t] != UINT32_MAX);
+    join_corners(m, first, t, other[t], *same);
+  }
+  for (uint32_t p = 0; p < m->n_point; p++) (*same)[p] = vg_root_of(*same, p);
+done:
+  free(first);
+  free(other);
+  if (st < 0) {
+    free(*same);
+    *same = NULL;
+  }
+  return st;
 }
 
 /* The corners of triangle t by their first copies, ascending. Returns the

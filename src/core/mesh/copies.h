@@ -38,6 +38,13 @@ vg_status vg_mesh_inner_points(const struct vg_mesh *m, uint32_t **first,
 vg_status vg_mesh_inner_pairs(const struct vg_mesh *m, const uint32_t *first,
                               uint32_t *other, struct vg_error *err);
 
+/** same[p]: the first of the points that are one with p in the complete mesh:
+ * corners of both sides of sheets with layers (is_split). Sets *same,
+ * [m->n_point], to be freed; NULL without such sheets. VG_ERR_MEMORY.
+ * O(n_point + n_tri). */
+vg_status vg_mesh_joined_points(const struct vg_mesh *m, uint32_t **same,
+                                struct vg_error *err);
+
 /** Count the points that have the coordinates of an earlier one, both being
  * corners of triangles that lie back to back on another triangle: the sides of
  * an inner surface, between which there is nothing. Other points that coincide

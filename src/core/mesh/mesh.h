@@ -48,6 +48,9 @@ struct vg_patch {
                            connected (core/mesh/sheets.h); VG_SHEET_GONE: a
                            patch without triangles that goes away with the
                            sheets */
+  int32_t is_split;     /* 1: a sheet with layers: until the mesh is complete,
+                           its sides have points of their own, as those of a
+                           baffle */
   int32_t is_interface; /* 1: a sheet that separates zones, or a wall between a
                            zone and one without cells */
   char name[VG_NAME_MAX]; /* empty if the file gives no name */

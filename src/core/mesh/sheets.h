@@ -3,8 +3,9 @@
  * and planes for monitors. Uses mesh.h.
  *
  * While a mesh is made, a sheet is an inner surface: a patch with both sides of
- * its triangles, which have the same points (core/sides/inner.h). In a finished
- * mesh it is no part of the boundary: sheet_tri has its triangles. */
+ * its triangles, which have the same points (core/sides/inner.h), or copies of
+ * them if layers grow on it (is_split). In a finished mesh it is no part of the
+ * boundary: sheet_tri has its triangles. */
 #ifndef VG_CORE_MESH_SHEETS_H
 #define VG_CORE_MESH_SHEETS_H
 
@@ -19,11 +20,18 @@ static inline int vg_mesh_has_sheets(const struct vg_mesh *m)
   return 0;
 }
 
-/** Is p the back of a sheet, which exists only until the mesh is complete?
- * Lists of patches omit it, and no setting refers to it. */
+/** Is p the back of a sheet without layers, which exists only until the mesh is
+ * complete? Lists of patches omit it, and no setting refers to it. */
 static inline int vg_patch_is_sheet_back(const struct vg_patch *p)
 {
-  return p->is_sheet && p->inner == VG_INNER_BACK;
+  return p->is_sheet && !p->is_split && p->inner == VG_INNER_BACK;
+}
+
+/** Have both sides of patch p, a sheet, the same points while the mesh is made?
+ */
+static inline int vg_patch_is_passed(const struct vg_patch *p)
+{
+  return p->is_sheet && !p->is_split;
 }
 
 /** Move the triangles of the patches with is_sheet from the boundary m to

@@ -14,6 +14,7 @@ static vg_status connect(struct vg_inner_work *s, struct vg_error *err)
 {
   const uint32_t *sector = s->sides.sector;
 
+  free(s->room);
   s->room = vg_alloc(s->sides.n_sector, sizeof *s->room);
   if (!s->room) return vg_fail_memory(err, "the sides of a sheet");
   for (uint32_t i = 0; i < s->sides.n_sector; i++) s->room[i] = i;
@@ -29,14 +30,34 @@ static vg_status build(struct vg_inner_work *s, struct vg_error *err)
 {
   const struct vg_mesh *m = s->m;
 
-  vg_status st;
-
-  free(s->room);
-  s->room = NULL;
   vg_sides_release(&s->sides);
-  st = vg_sides_build(&s->sides, m->n_point, (const double(*)[3])m->point,
-                      m->n_tri, (const uint32_t(*)[3])m->tri, err);
-  return st < 0 ? st : connect(s, err);
+  return vg_sides_build(&s->sides, m->n_point, (const double(*)[3])m->point,
+                        m->n_tri, (const uint32_t(*)[3])m->tri, err);
+}
+
+/* Cuts edges until both sides differ: in the complete mesh, and while it is
+ * made. */
+static vg_status cut(struct vg_inner_work *s, struct vg_error *err)
+{
+  size_t n_cut, n;
+  int has_split = 0;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < s->m->n_patch; i++)
+    has_split |= s->m->patch[i].is_split;
+  do {
+    n = 0;
+    for (s->passes_all = has_split + 1; s->passes_all--;) {
+      VG_TRY(connect(s, err));
+      VG_TRY(vg_inner_cut(s, &n_cut, err));
+      if (n_cut) VG_TRY(build(s, err));
+      n += n_cut;
+    }
+    s->report->n_cut += n;
+    s->passes_all = 0;
+  } while (n);
+done:
+  return st;
 }
 
 /* --- copies of points ----------------------------------------------------- */
@@ -128,18 +149,13 @@ static vg_status make_copies(struct vg_inner_work *s, const uint32_t *back,
 static vg_status make(struct vg_inner_work *s, const uint32_t *back,
                       struct vg_error *err)
 {
-  size_t n_cut;
   vg_status st;
 
   VG_TRY(vg_inner_orient(s, err));
   VG_TRY(build(s, err));
   VG_TRY(vg_inner_check(s, err));
   VG_TRY(vg_inner_near(s, err));
-  do {
-    VG_TRY(vg_inner_cut(s, &n_cut, err));
-    if (n_cut) VG_TRY(build(s, err));
-    s->report->n_cut += n_cut;
-  } while (n_cut);
+  VG_TRY(cut(s, err));
   for (size_t t = 0; t < s->m->n_tri; t++)
     s->report->n_tri += (size_t)vg_is_sheet(s, t);
   st = make_copies(s, back, err);

@@ -10,9 +10,9 @@
  * A boundary with sheets as doubled here is closed, and every edge on it has as
  * many triangles in one direction as in the other. Points inside a sheet occur
  * once for each sector around them (core/sides/sides.h), points of free edges
- * once. If the mesh continues through a sheet (is_sheet of its patch), both of
- * its sides have the same points: the sectors that it separates count as
- * one. */
+ * once. If the mesh continues through a sheet without layers
+ * (vg_patch_is_passed), both of its sides have the same points: the sectors
+ * that it separates count as one. */
 #ifndef VG_CORE_SIDES_INNER_H
 #define VG_CORE_SIDES_INNER_H
 

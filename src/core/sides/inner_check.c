@@ -145,7 +145,7 @@ static vg_status count_sealed(const struct vg_inner_work *s, const uint8_t *has,
   if (!up) return vg_fail_memory(err, "the sides of a sheet");
   for (uint32_t r = 0; r < a->n_region; r++) up[r] = r;
   for (size_t t = 0; t < a->n_tri; t++)
-    if (vg_is_passed(s, t))
+    if (vg_is_sheet(s, t) && s->m->patch[s->m->tri_patch[t]].is_sheet)
       vg_union(up, a->region[2 * t], a->region[2 * t + 1]);
   for (uint32_t r = 0; r < a->n_region; r++)
     n_fluid += up[r] == r && !(has[r] & HAS_SOLID);

@@ -4,6 +4,7 @@
 #ifndef VG_CORE_SIDES_INNER_PARTS_H
 #define VG_CORE_SIDES_INNER_PARTS_H
 
+#include "core/mesh/sheets.h"
 #include "core/sides/inner.h"
 #include "core/sides/sides.h"
 
@@ -12,8 +13,9 @@ struct vg_inner_work {
   const uint8_t *is_inner; /* [m->n_patch] */
   struct vg_inner_report *report;
   struct vg_sides sides; /* of the triangles of m */
+  int passes_all;        /* 1: sheets with is_split count as passed */
   uint32_t *room;        /* [sides.n_sector] the first of the sectors around a
-                            point that sheets with is_sheet connect */
+                            point that passed sheets connect */
 };
 
 static inline int vg_is_sheet(const struct vg_inner_work *s, size_t tri)
@@ -21,11 +23,13 @@ static inline int vg_is_sheet(const struct vg_inner_work *s, size_t tri)
   return s->is_inner[s->m->tri_patch[tri]];
 }
 
-/** Does the mesh continue through triangle tri, so that its sides have the same
- * points? */
+/** Does the mesh continue through triangle tri, and have its sides the same
+ * points, while it is made or, with passes_all, when it is complete? */
 static inline int vg_is_passed(const struct vg_inner_work *s, size_t tri)
 {
-  return s->m->patch[s->m->tri_patch[tri]].is_sheet && vg_is_sheet(s, tri);
+  const struct vg_patch *p = &s->m->patch[s->m->tri_patch[tri]];
+
+  return p->is_sheet && (s->passes_all || !p->is_split) && vg_is_sheet(s, tri);
 }
 
 /** Orient each piece of a patch whose triangles are connected through edges of

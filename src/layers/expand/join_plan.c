@@ -8,6 +8,7 @@
 
 #include "base/checks.h"
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "core/mesh/mesh_defects.h"
 
 vg_status vg_join_check_field(const struct vg_front *f, uint64_t n_point,
@@ -30,8 +31,10 @@ static int is_new(const struct vg_front *f, size_t i)
 }
 
 /* Numbers the points of the surface in use, which are the roots and the points
- * of the front. Returns their number. */
-static size_t number_surface(struct vg_join_plan *p)
+ * of the front. Points that are one in the mesh get one number. same:
+ * [surface->n_point] the first of such points; NULL: each is alone. Returns the
+ * number of points. */
+static size_t number_surface(struct vg_join_plan *p, const uint32_t *same)
 {
   const struct vg_front *f = p->front;
   size_t n = 0;
@@ -44,8 +47,11 @@ static size_t number_surface(struct vg_join_plan *p)
 
     if (v != VG_NO_INDEX) p->root[v] = 0;
   }
+  for (size_t i = 0; same && i < p->surface->n_point; i++)
+    if (p->root[i] != VG_NO_INDEX) p->root[same[i]] = 0;
   for (size_t i = 0; i < p->surface->n_point; i++)
-    if (p->root[i] != VG_NO_INDEX) p->root[i] = (uint32_t)n++;
+    if (p->root[i] != VG_NO_INDEX)
+      p->root[i] = same && same[i] != i ? p->root[same[i]] : (uint32_t)n++;
   return n;
 }
 
@@ -71,11 +77,14 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
 {
   struct vg_expand *e = &p->expand;
   size_t first[2], n_new = 0;
-  vg_status st;
+  uint32_t *same;
+  vg_status st = vg_mesh_joined_points(p->surface, &same, err);
 
+  if (st < 0) return st;
   for (size_t i = 0; i < p->front->n_point; i++)
     n_new += (size_t)is_new(p->front, i);
-  p->first_flank = number_surface(p);
+  p->first_flank = number_surface(p, same);
+  free(same);
   p->first_new = p->first_flank + e->n_point[VG_FLANK];
   p->first_inner = p->first_new + n_new;
   p->first_field = p->first_inner + e->n_point[VG_INNER];

@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "core/judge/flat_cells.h"
 #include "core/mesh/copies.h"
+#include "core/mesh/sheets.h"
 #include "layers/expand/slices_parts.h"
 
 /* Least number of cells in a slice, and number of points in a slice of boundary
@@ -30,6 +31,7 @@ struct vg_layer_slices {
   struct vg_join_plan plan;
   const struct vg_slices *field;
   double (*point)[3]; /* Boundary points. */
+  size_t n_front;     /* vg_layer_slices_front */
   uint64_t n_copy;    /* Boundary points that are copies of earlier ones. */
   uint8_t *kind;      /* [front n_point] enum vg_point_kind, for flat cells. */
   size_t rank, size;
@@ -69,6 +71,34 @@ static vg_status count_copies(struct vg_layer_slices *k, struct vg_error *err)
   return vg_mesh_has_inner(&m) ? vg_mesh_copies(&m, &k->n_copy, err) : VG_OK;
 }
 
+/* Faces of the front on each sheet: two if the field is on both sides. */
+static vg_status count_front(struct vg_layer_slices *k, struct vg_error *err)
+{
+  const struct vg_mesh *m = &k->plan.boundary;
+  const struct vg_front *f = k->plan.front;
+  struct vg_sheet_table table = VG_SHEET_TABLE_INIT;
+  uint8_t *n;
+  vg_status st;
+
+  k->n_front = f->n_face;
+  if (!m->n_sheet_tri) return VG_OK;
+  n = vg_calloc(m->n_sheet_tri, 1);
+  if (!n) return vg_fail_memory(err, "the sheets");
+  VG_TRY(vg_sheet_table_new(&table, m, err));
+  for (size_t i = 0; i < f->n_face; i++) {
+    uint32_t v[3], t;
+    int is_same;
+
+    for (int c = 0; c < 3; c++) v[c] = k->plan.id[f->face[i][c]];
+    t = vg_sheet_table_find(&table, v, &is_same);
+    if (t != UINT32_MAX && ++n[t] == 2) k->n_front -= 2;
+  }
+done:
+  vg_sheet_table_release(&table);
+  free(n);
+  return st;
+}
+
 static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
 {
   size_t n = k->plan.first_inner;
@@ -79,6 +109,7 @@ static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
   if (!k->point) return vg_fail_memory(err, "the points of the boundary");
   vg_join_plan_points(&k->plan, 1, k->point);
   VG_TRY(count_copies(k, err));
+  VG_TRY(count_front(k, err));
   k->n_part = (n + SLICE_POINTS - 1) / SLICE_POINTS;
 done:
   return st;
@@ -367,6 +398,11 @@ vg_status vg_layer_slices_flat(struct vg_layer_slices *k, struct vg_flat **out,
       k->kind[p] = VG_POINT_WALL;
   }
   return vg_flat_new(&b, out, err);
+}
+
+size_t vg_layer_slices_front(const struct vg_layer_slices *keep)
+{
+  return keep->n_front;
 }
 
 const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep)

@@ -77,6 +77,10 @@ size_t vg_layer_slices_bytes(const struct vg_layer_slices *keep);
  * remeshed. On every rank, valid until closed. */
 const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep);
 
+/** Number of faces of the front without those of sheets on which the field is
+ * on both sides. */
+size_t vg_layer_slices_front(const struct vg_layer_slices *keep);
+
 /** Accepts NULL. */
 void vg_layer_slices_close(struct vg_layer_slices *keep);
 

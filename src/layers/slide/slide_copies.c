@@ -15,6 +15,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/edges.h"
+#include "core/mesh/sheets.h"
 #include "layers/slide/slide_parts.h"
 
 static int compare_key(const void *a, const void *b)
@@ -30,13 +31,14 @@ vg_status vg_slide_hold(struct vg_slide_work *w)
   size_t n = 0;
 
   for (size_t t = 0; t < m->n_tri; t++)
-    n += 3 * (size_t)m->patch[m->tri_patch[t]].is_sheet;
+    n += 3 * (size_t)vg_patch_is_passed(&m->patch[m->tri_patch[t]]);
   if (!n) return VG_OK;
   w->held = vg_calloc(m->n_point, 1);
   w->held_edge = vg_alloc(n, sizeof *w->held_edge);
   if (!w->held || !w->held_edge) return vg_fail_memory(w->err, "the sheets");
   for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && m->patch[m->tri_patch[t]].is_sheet; k++) {
+    for (int k = 0; k < 3 && vg_patch_is_passed(&m->patch[m->tri_patch[t]]);
+         k++) {
       const uint32_t a = m->tri[t][k], b = m->tri[t][k < 2 ? k + 1 : 0];
 
       w->held[a] = 1;

@@ -454,8 +454,12 @@ static vg_status make_sizing(const struct vg_boundary *b,
 {
   const struct vg_settings *s = &b->read->settings;
   struct vg_sizing_options options = vg_boundary_sizing(b);
-  struct vg_mesh view = b->surface; /* Borrowed, except for its points. */
-  vg_status st;
+  struct vg_mesh all = VG_MESH_INIT, view; /* view is borrowed, except for its
+                                              points. */
+  vg_status st = b->inner.n_tri ? vg_boundary_with_inner(b, &all, err) : VG_OK;
+
+  if (st < 0) return st;
+  view = b->inner.n_tri ? all : b->surface;
 
   /* The farfield is far from the body, so the largest edge of the body does not
    * limit it. */
@@ -463,15 +467,19 @@ static vg_status make_sizing(const struct vg_boundary *b,
   options.threads = b->threads;
   if (far->kind == VG_FARFIELD_MACH) {
     options.coarseness = BOOM_COARSENESS;
-    view.point = vg_alloc(view.n_point + 2, sizeof *view.point);
-    if (!view.point) return vg_fail_memory(err, "the sizing field");
-    memcpy(view.point, b->surface.point, view.n_point * sizeof *view.point);
+    double(*point)[3] = vg_alloc(view.n_point + 2, sizeof *point);
+
+    if (!point) VG_TRY(vg_fail_memory(err, "the sizing field"));
+    memcpy(point, view.point, view.n_point * sizeof *point);
+    view.point = point;
     vg_domain_bounds(&b->surface, far, view.point[view.n_point],
                      view.point[view.n_point + 1]);
     view.n_point += 2;
   }
   st = vg_boundary_measure(b, &options, s, &view, out, err);
-  if (view.point != b->surface.point) free(view.point);
+  if (far->kind == VG_FARFIELD_MACH) free(view.point);
+done:
+  vg_mesh_release(&all);
   return st;
 }
 
@@ -487,6 +495,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(check_farfield(b, &far, err));
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
+  far.sheets = b->inner.n_tri ? &b->inner : NULL;
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
   VG_TRY(check_reach(b, err));
   VG_TRY(stretch_added(b, n_own, sizing, far.spacing, show, err));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/copies.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
@@ -103,4 +104,30 @@ done:
   free(on);
   free(from);
   return st;
+}
+
+vg_status vg_inner_split(const struct vg_settings *s, struct vg_mesh *m,
+                         struct vg_error *err)
+{
+  uint8_t *on = vg_calloc(m->n_patch, 1);
+  struct vg_error why = VG_ERROR_INIT;
+  size_t at;
+
+  if (!on) return vg_fail_memory(err, "the patches");
+  if (s->layer.grow != VG_ANSWER_NO) {
+    (void)vg_patch_list_mark("walls", s->layer.walls, m, m->n_patch, on, &why);
+    for (size_t i = 0; i < s->n_layer; i++) {
+      at = vg_mesh_find_patch(m, s->layer_row[i].id);
+      if (at != SIZE_MAX && s->layer_row[i].grow == VG_ANSWER_YES) on[at] = 1;
+    }
+  }
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].inner == VG_INNER_BACK) {
+      struct vg_patch *front = &m->patch[vg_mesh_front_patch(m, i)];
+
+      at = (size_t)(front - m->patch);
+      front->is_split = m->patch[i].is_split &= on[i] || on[at];
+    }
+  free(on);
+  return VG_OK;
 }

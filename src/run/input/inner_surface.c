@@ -102,17 +102,7 @@ static vg_status add_back(struct vg_boundary *b, size_t i, int role,
   back->inner = VG_INNER_BACK;
   m->patch[i].is_sheet = back->is_sheet = role >= VG_PATCH_SHEET;
   m->patch[i].is_interface = back->is_interface = role == VG_PATCH_INTERFACE;
-  if (role >= VG_PATCH_SHEET)
-    vg_note(b->notes,
-            "patch %d%s%s is %s: its triangles are faces between cells",
-            (int)m->patch[i].id, *name ? " " : "", m->patch[i].name,
-            role == VG_PATCH_SHEET ? "a sheet" : "an interface");
-  else
-    vg_note(
-      b->notes,
-      "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
-      (int)m->patch[i].id, *name ? " " : "", m->patch[i].name, (int)back->id,
-      *name ? " " : "", back->name);
+  m->patch[i].is_split = back->is_split = role >= VG_PATCH_SHEET;
   return VG_OK;
 }
 
@@ -127,6 +117,33 @@ static vg_status add_backs(struct vg_boundary *b, size_t n, const uint8_t *role,
       if (role[i] && (role[i] >= VG_PATCH_SHEET) == r)
         st = add_back(b, i, role[i], err);
   return st;
+}
+
+static void note_role(const struct vg_boundary *b, size_t i)
+{
+  const struct vg_mesh *m = &b->surface;
+  const struct vg_patch *back = &m->patch[i], *p;
+  const char *space;
+
+  p = &m->patch[vg_mesh_front_patch(m, i)];
+  space = *p->name ? " " : "";
+  if (!p->is_sheet)
+    vg_note(
+      b->notes,
+      "patch %d%s%s is an inner surface (baffles); its back is patch %d%s%s",
+      (int)p->id, space, p->name, (int)back->id, space, back->name);
+  else if (!p->is_split)
+    vg_note(b->notes,
+            "patch %d%s%s is %s: its triangles are faces between cells",
+            (int)p->id, space, p->name,
+            p->is_interface ? "an interface" : "a sheet");
+  else
+    vg_note(b->notes,
+            "patch %d%s%s is %s with layers: its triangles are faces between "
+            "cells, and patch %d%s%s stands for its back in lists and tables",
+            (int)p->id, space, p->name,
+            p->is_interface ? "an interface" : "a sheet", (int)back->id, space,
+            back->name);
 }
 
 /* Drops the points of m that only triangles of `inner` have. Other points that
@@ -186,7 +203,8 @@ static vg_status split_off(struct vg_mesh *m, struct vg_mesh *inner,
   return drop_points(m, inner, err);
 }
 
-vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
+vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_settings *s,
+                                 struct vg_error *err)
 {
   struct vg_mesh *m = &b->surface;
   const size_t n_patch = m->n_patch;
@@ -197,6 +215,9 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err)
   VG_TRY(refuse_changes(b, err));
   VG_TRY(vg_inner_roles(&b->read->settings, m, role, err));
   VG_TRY(add_backs(b, n_patch, role, err));
+  VG_TRY(vg_patch_rows_resolve(s, m, err));
+  VG_TRY(vg_inner_split(s, m, err));
+  for (size_t i = n_patch; i < m->n_patch; i++) note_role(b, i);
   VG_TRY(split_off(m, &b->inner, err));
   if (!m->n_tri) VG_TRY(refuse_all(b, err));
   vg_note(
@@ -299,10 +320,8 @@ void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
 /* --- check -----------------------------------------------------------------
  */
 
-/* The surface with the inner triangles at the end, and points of the same place
- * as one. */
-static vg_status combine(const struct vg_boundary *b, struct vg_mesh *out,
-                         struct vg_error *err)
+vg_status vg_boundary_with_inner(const struct vg_boundary *b,
+                                 struct vg_mesh *out, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface, *inner = &b->inner;
   const size_t n_point = m->n_point + inner->n_point;
@@ -470,7 +489,7 @@ vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
 
   assert(b->inner.n_tri);
   vg_display_update(show, "inner surfaces", b->inner.n_tri, 0);
-  VG_TRY(combine(b, &all, err));
+  VG_TRY(vg_boundary_with_inner(b, &all, err));
   VG_TRY(check_together(b, &all, show, err));
   if (b->check.n_defect) goto done;
   st = put_sides(b, &all, &why);

@@ -58,10 +58,24 @@ const char *vg_inner_source(const struct vg_settings *s, char *text,
 vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
                          uint8_t *role, struct vg_error *err);
 
-/** Moves the triangles of inner surfaces to b->inner, and adds patches for
- * their other sides. VG_ERR_INPUT for patches that the surface does not have,
- * VG_ERR_UNSUPPORTED for settings that change the surface. */
-vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_error *err);
+/** Clears is_split of both sides of each sheet of m on which the settings
+ * request no layers, by the list `walls` or the column `grow`. Items that no
+ * patch matches are no error here: vg_walls_find reports them. VG_ERR_MEMORY.
+ */
+vg_status vg_inner_split(const struct vg_settings *s, struct vg_mesh *m,
+                         struct vg_error *err);
+
+/** Moves the triangles of inner surfaces to b->inner, adds patches for their
+ * other sides, and resolves the names of these in s, the settings of b->read.
+ * VG_ERR_INPUT for patches that the surface does not have, VG_ERR_UNSUPPORTED
+ * for settings that change the surface. */
+vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_settings *s,
+                                 struct vg_error *err);
+
+/** out: b->surface with the triangles of b->inner at the end, and points of the
+ * same place as one. VG_ERR_MEMORY. */
+vg_status vg_boundary_with_inner(const struct vg_boundary *b,
+                                 struct vg_mesh *out, struct vg_error *err);
 
 /** Checks the closed surface together with b->inner, which has triangles, and
  * adds both sides of these to the surface. If there are defects, b->check and

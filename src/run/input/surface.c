@@ -602,8 +602,7 @@ vg_status vg_boundary_shape(struct vg_read *read,
   }
   if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
-    VG_TRY(vg_boundary_take_inner(b, err));
-    VG_TRY(vg_patch_rows_resolve(&read->settings, &b->surface, err));
+    VG_TRY(vg_boundary_take_inner(b, &read->settings, err));
   }
   vg_boundary_note_slivers(b);
   st = try_shapes(b, o, show, err);

@@ -125,22 +125,6 @@ static vg_status refuse_added_walls(const struct vg_boundary *b,
   return VG_OK;
 }
 
-static vg_status refuse_sheet(const struct vg_mesh *m,
-                              const enum vg_wall_reason *reason,
-                              struct vg_error *err)
-{
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].is_sheet && reason[i] != VG_WALL_NOT)
-      return vg_fail(
-        err, VG_ERR_INPUT,
-        "layers are requested on patch %d%s%s, but it is %s, "
-        "through which the mesh continues; remove it from the "
-        "list walls and from the table layers, or make it a baffle",
-        (int)m->patch[i].id, *m->patch[i].name ? " " : "", m->patch[i].name,
-        m->patch[i].is_interface ? "an interface" : "a sheet");
-  return VG_OK;
-}
-
 static vg_status refuse_periodic(const struct vg_boundary *b,
                                  const enum vg_wall_reason *reason,
                                  struct vg_error *err)
@@ -318,7 +302,6 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   for (size_t i = 0; i < m->n_patch; i++)
     reason[i] = by_input(b, i, has_faces[i]);
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
-  VG_TRY(refuse_sheet(m, reason, err));
   if (vg_walls_asked(&b->read->settings) || b->require_bc)
     VG_TRY(refuse_periodic(b, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));

@@ -88,6 +88,7 @@ static void turn_patches(const struct cut *c)
     const int sides = c->sides[c->front[p]];
 
     if (sides != ONE_SIDE && sides != NO_SIDE) continue;
+    patch->is_split = 0;
     if (sides == ONE_SIDE && c->front[p] == p) {
       patch->is_sheet = 0;
       patch->inner = VG_INNER_NOT;

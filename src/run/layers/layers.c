@@ -439,7 +439,8 @@ static void give_conditions(const struct vg_layer_stage *s,
     struct vg_patch *patch = &b->surface.patch[i];
 
     if (s->reason[i] == VG_WALL_NOT || s->reason[i] == VG_WALL_EXTENDED ||
-        patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE)
+        patch->is_sheet || patch->bc != VG_BC_NONE ||
+        patch->bc_fun3d != VG_BC_NONE)
       continue;
     patch->bc = patch->family = 4;
     patch->bc_fun3d = 4000;

@@ -268,10 +268,10 @@ static size_t *each_unset(size_t n)
   return of;
 }
 
-static int has_baffle_row(const struct vg_settings *s)
+static int has_inner_row(const struct vg_settings *s)
 {
   for (size_t i = 0; i < s->n_patch; i++)
-    if (s->patch[i].role == VG_PATCH_BAFFLE) return 1;
+    if (s->patch[i].role > VG_PATCH_WALL) return 1;
   return 0;
 }
 
@@ -281,7 +281,8 @@ static int may_be_back(enum vg_table_kind kind, const struct vg_settings *s,
                        const char *name, const struct vg_mesh *m)
 {
   if (kind != VG_TABLE_LAYERS || !*name) return 0;
-  if (!*s->baffles && !has_baffle_row(s)) return 0;
+  if (!*s->baffles && !*s->sheets && !*s->zone_interfaces && !has_inner_row(s))
+    return 0;
   for (size_t k = 0; k < m->n_patch; k++)
     if (m->patch[k].inner || vg_patch_name_matches(name, m->patch[k].name))
       return 0;

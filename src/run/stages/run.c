@@ -481,10 +481,9 @@ vg_status vg_run_judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_sizing *sizing, struct vg_display *show,
                        struct vg_error *err)
 {
-  const size_t n_sheet = r->slices.boundary->n_sheet_tri;
   const int is_section = r->section.solid.n_point > 0;
   size_t front_faces = is_section ? r->section.n_front
-                     : layers     ? layers->front.n_face - 2 * n_sheet
+                     : layers     ? vg_layer_slices_front(r->layers)
                                   : 0;
   struct put put = { .run = r, .show = show };
   struct vg_flat *flat = NULL;

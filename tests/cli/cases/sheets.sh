@@ -64,10 +64,67 @@ vanguard check order.stl --flow internal --baffles fin --sheets disk --json
 exits 0
 lacks out "disk_back"
 vanguard mesh order.stl --flow internal --baffles fin --sheets disk \
-  --walls disk_back --first 0.004
+  --walls disc_back --first 0.004
 exits 1
-says err "walls: no patch of the surface is named 'disk_back'"
-says err "8 fin (no condition), 9 fin_back (no condition)"
+says err "walls: no patch of the surface is named 'disc_back'"
+says err "7 disk (no condition), 8 fin (no condition), 9 fin_back (no condition)"
+lacks err "disk_back ("
+
+# --- layers on sheets --------------------------------------------------------
+
+# Sheets that are free, across, before and behind a baffle, and that meet.
+duct tall "tall 8 6  0.5 0 0  0 1 0  0 0 0.75"
+for cells in tets mixed hex; do
+  set -- --first 0.004 --cells $cells
+  valid disk --sheets disk --walls disk "$@" # two edges are cut
+  says out "7            36            36            36       0.25  disk"
+  lacks out "coincident"
+  valid across --sheets mid --walls '*' "$@"
+  says out "7           128           128           128          1  mid"
+  says out "connected regions: 1"
+  valid both --sheets fin,plate --walls '*' "$@"
+  says out "8            18            18            18      0.125  plate"
+  valid both --sheets fin,plate --walls 'w*,plate' "$@"
+  valid both --baffles fin --sheets plate --walls '*' "$@"
+  says out "8            18            18            18      0.125  plate"
+  valid both --sheets fin --baffles plate --walls '*' "$@"
+  valid tall --sheets tall --walls tall_back "$@"
+  says out "7            96            96            96       0.75  tall"
+done
+
+# All faces but those at the free edge have all layers, with requests by side;
+# the deck with all settings makes the same mesh.
+cat >tall.deck <<'END'
+sheet
+
+sheets  walls
+tall    tall
+
+layers
+id        first  count
+tall      0.004  6
+tall_back 0.008  3
+END
+vanguard mesh tall.stl --flow internal --hmax 0.12 --write b8.ugrid --out tall
+exits 0
+for patch in tall tall_back; do
+  [ "$(full out $patch)" = 83.33 ] || fail "layers of $patch"
+done
+says out "patch 8 tall_back stands for its back in lists and tables"
+vanguard mesh tall.stl --deck tall/tall.resolved.deck --quiet --write b8.ugrid \
+  --out tall_again
+exits 0
+same tall/tall.b8.ugrid tall_again/tall.b8.ugrid
+same tall/tall.sheets tall_again/tall.sheets
+rm tall.deck
+vanguard mesh tall.stl --flow internal --sheets tall --walls tall \
+  --slip tall_back --first 0.004 --hmax 0.12 --write b8.ugrid --out one
+exits 0
+[ -n "$(full out tall)" ] && [ -z "$(full out tall_back)" ] ||
+  fail "layers of one side of a sheet"
+vanguard check one/tall.b8.ugrid
+exits 0
+says out "7            96            96            96       0.75  tall"
 
 # A sheet ends in a side of the duct in which columns of the floor slide; near
 # the floor they stay below it. The floor has all layers where there is room.
@@ -114,7 +171,84 @@ for way in $ways; do
   vanguard check ${way}1/both.b8.ugrid
   exits 0
   says out "8            16            16            16      0.125  plate"
+  for threads in 1 3; do
+    vanguard mesh both.stl --flow internal --quiet --sheets fin,plate \
+      --walls '*' --first 0.004 --decompose $way --leaf-cells 1500 --hmax 0.08 \
+      --threads $threads --write b8.ugrid,msh --out layers$way$threads
+    exits 0
+  done
+  for file in b8.ugrid sheets msh; do
+    same layers${way}1/both.$file layers${way}3/both.$file
+  done
+  vanguard check layers${way}1/both.msh
+  exits 0
+  says out "8            18            18            18      0.125  plate"
 done
+
+# --- half models -------------------------------------------------------------
+
+# wedge NAME Y: half a wing with a sharp trailing edge, cut at y = 0, and a wake
+# from there, whose inner edge is at Y, as NAME.stl.
+wedge() {
+  awk -v inner="$2" 'function at(s, t, k) {
+      return sprintf("%.17g", (1 - s) * (1 - t) * p[0, k] + s * (1 - t) * p[1, k] \
+                     + s * t * p[2, k] + (1 - s) * t * p[3, k])
+    }
+    function corner(s, t) { print "vertex", at(s, t, 0), at(s, t, 1), at(s, t, 2) }
+    function facet(a, b, c, d, e, f) {
+      print "facet normal 0 0 0\nouter loop"
+      corner(a, b); corner(c, d); corner(e, f)
+      print "endloop\nendfacet"
+    }
+    function sheet(x,   i, j, q) {
+      split(x, q, " ")
+      for (i = 0; i < 12; i++) p[int(i / 3), i % 3] = q[i + 1]
+      for (j = 0; j < 1; j += h) for (i = 0; i < 1; i += h) {
+        facet(i, j, i + h, j, i + h, j + h)
+        facet(i, j, i + h, j + h, i, j + h)
+      }
+    }
+    BEGIN {
+      h = 0.125
+      print "solid wing"
+      sheet("0 0 0  0 1 0  .5 1 .1  .5 0 .1")
+      sheet(".5 0 .1  .5 1 .1  1 1 0  1 0 0")
+      sheet("0 0 0  .5 0 -.1  .5 1 -.1  0 1 0")
+      sheet(".5 0 -.1  1 0 0  1 1 0  .5 1 -.1")
+      sheet("0 1 0  .5 1 -.1  1 1 0  .5 1 .1")
+      print "endsolid wing\nsolid wake"
+      sheet("1 " inner " 0  2 " inner " 0  2 1 0  1 1 0")
+      print "endsolid wake"
+    }' >"$1.stl"
+}
+
+# half OPTION...: a mesh with a symmetry plane that is cut along the wake.
+half() {
+  vanguard mesh wedge.stl --half y --farfield-lengths 5 --quiet \
+    --write b8.ugrid --out half "$@"
+  exits 0
+  vanguard check half/wedge.b8.ugrid
+  exits 0
+  says out "valid"
+  says out "6662"
+}
+
+wedge wedge 0
+half --sheets wake
+says out "2           128           128           128          1  wake"
+half --baffles wake
+says out "wake_back"
+for cells in tets mixed; do
+  half --sheets wake --walls wing,wake --first 0.002 --cells $cells
+  says out "2           128           128           128          1  wake"
+  lacks out "coincident"
+done
+wedge beyond -0.125
+vanguard mesh beyond.stl --half y --sheets wake --out no
+exits 1
+says err "2 wake, an inner surface, reaches beyond the symmetry plane y = 0 at ("
+says err "-0.125, 0); cut it off at the plane"
+absent no
 
 # --- formats -----------------------------------------------------------------
 
@@ -236,17 +370,28 @@ if command -v createBaffles >/dev/null; then
   set +u
   [ -n "${WM_PROJECT_DIR:-}" ] || foam
   set -u
-  cat >all/both.openfoam/system/createBafflesDict <<'END'
+  cat >all/createBafflesDict <<'END'
 FoamFile { version 2.0; format ascii; class dictionary; object createBafflesDict; }
 internalFacesOnly true;
 baffles { plate { type faceZone; zoneName plate; patches {
   master { name plate_a; type wall; } slave { name plate_b; type wall; } } } }
 END
+  cp all/createBafflesDict all/both.openfoam/system
   (cd all/both.openfoam && checkMesh) >out 2>err
   says out "Mesh OK."
   grep -qE "fin +32 +25 +ok" out || fail "the zone fin has no 32 faces"
   (cd all/both.openfoam && createBaffles -overwrite) >out 2>err
   says out "Converted 16 faces into boundary faces in patches 2(plate_a plate_b)"
+  vanguard mesh both.stl --flow internal --quiet --sheets fin,plate \
+    --walls fin,plate --first 0.004 --layer-count 5 --hmax 0.12 --write foam \
+    --out all
+  exits 0
+  cp all/createBafflesDict all/both.openfoam/system
+  (cd all/both.openfoam && checkMesh) >out 2>err
+  says out "Mesh OK."
+  (cd all/both.openfoam && createBaffles -overwrite && checkMesh) >out 2>err
+  says out "Converted 18 faces into boundary faces in patches 2(plate_a plate_b)"
+  says out "Mesh OK."
 else echo "OpenFOAM is not installed: its programs are omitted"; fi
 
 # --- refused -----------------------------------------------------------------
@@ -267,10 +412,6 @@ says err "patch 8 plate is a sheet by sheets, and a wall by the table patches"
 vanguard mesh disk.stl --flow internal --sheets '1-7'
 exits 1
 says err "all triangles are in inner surfaces (sheets 1-7)"
-vanguard mesh disk.stl --flow internal --sheets disk --walls 'w*,disk' \
-  --first 0.004
-exits 1
-says err "layers are requested on patch 7 disk, but it is a sheet"
 duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
 vanguard mesh cut.stl --flow internal --sheets cut
 exits 1

@@ -92,6 +92,24 @@ valid mid --zone-interfaces mid --walls 'w*' --first 0.004 --cells mixed
 says out "0.5 "
 says out "connected regions: 1"
 
+# Layers on both sides of interfaces: cells of each zone, and all layers.
+for cells in tets mixed hex; do
+  valid two --zone-interfaces rot,in --walls '*' --first 0.004 --cells $cells
+  says out "1 fluid "
+  says out "0.109375 "
+  says out "connected regions: 1"
+  valid mid --zone-interfaces mid --walls 'mid_back,w1' --first 0.004 \
+    --cells $cells
+  says out "0.5 "
+done
+vanguard mesh two.stl --flow internal --zone-interfaces rot,in --walls 'rot,in' \
+  --first 0.004 --layer-count 4 --hmax 0.12 --write b8.ugrid --out full
+exits 0
+for patch in rot rot_back in in_back; do
+  [ "$(full out $patch)" = 100.00 ] || fail "layers of $patch"
+done
+lacks out "seal off"
+
 # Solids have no cells unless they are asked for.
 zones "solid 0" >two.deck
 valid two --zone-interfaces rot,in
@@ -140,6 +158,19 @@ for way in $ways; do
   vanguard check ${way}1/two.b8.ugrid
   exits 0
   says out "0.109375 "
+  for threads in 1 3; do
+    vanguard mesh two.stl --flow internal --quiet --zone-interfaces rot,in \
+      --walls 'rot,in,w*' --first 0.004 --cells mixed --decompose $way \
+      --leaf-cells 2000 --hmax 0.07 --threads $threads \
+      --write b8.ugrid,vtu,msh --out layers$way$threads
+    exits 0
+  done
+  for file in b8.ugrid sheets vtu msh; do
+    same layers${way}1/two.$file layers${way}3/two.$file
+  done
+  vanguard check layers${way}1/two.msh
+  exits 0
+  says out "0.109375 "
 done
 if mpirun -n 2 true >/dev/null 2>&1; then
   ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh \
@@ -149,11 +180,19 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   for file in b8.ugrid sheets vtu msh; do
     same advancing1/two.$file ranks/two.$file
   done
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 2 "$program" mesh \
+    two.stl --flow internal --quiet --zone-interfaces rot,in \
+    --walls 'rot,in,w*' --first 0.004 --cells mixed --leaf-cells 2000 \
+    --hmax 0.07 --threads 1 --write b8.ugrid,vtu,msh --out ranks >out 2>err ||
+    fail "two ranks: $(cat err)"
+  for file in b8.ugrid sheets vtu msh; do
+    same layersadvancing1/two.$file ranks/two.$file
+  done
 else echo "mpirun does not work here: ranks are omitted"; fi
 
 # A run that is killed, and resumed with other threads.
 set -- mesh two.stl --flow internal --quiet --zone-interfaces rot,in \
-  --leaf-cells 2000 --hmax 0.07 --write b8.ugrid,vtu,msh --out resumed \
+  --walls 'rot,in,w*' --first 0.004 --cells mixed --leaf-cells 2000 --hmax 0.07 --write b8.ugrid,vtu,msh --out resumed \
   --run-dir run
 "$program" "$@" -t 1 >out 2>err </dev/null &
 job=$!
@@ -167,7 +206,7 @@ absent resumed/two.b8.ugrid
 vanguard "$@" -t 2 --resume
 exits 0
 for file in b8.ugrid sheets vtu msh; do
-  same advancing1/two.$file resumed/two.$file
+  same layersadvancing1/two.$file resumed/two.$file
 done
 
 # --- formats ---------------------------------------------------------------------
@@ -324,8 +363,6 @@ refused "wet" --zone-interfaces rot,in
 rm two.deck
 refused "is a sheet by sheets, and an interface by zone_interfaces" --sheets in \
   --zone-interfaces rot,in
-refused "layers are requested on patch 7 rot, but it is an interface" \
-  --zone-interfaces rot,in --walls 'w*,rot' --first 0.004
 vanguard mesh two.stl --flow internal --zone-interfaces rot,in --write cogsg \
   --out no
 exits 1
@@ -337,6 +374,14 @@ vanguard mesh one.stl --flow internal --zone-interfaces 'w1,w3,rot' --quiet --ou
 exits 1
 says err "These patches are inner surfaces and close nothing: "
 says err "remove it from the list of baffles, sheets or zone_interfaces"
+
+# One side of the box, without which it looks like a half model.
+for flow in internal external; do
+  vanguard mesh one.stl --flow $flow --zone-interfaces 'w1,rot' --quiet --out no
+  exits 1
+  says err "patch 1 w1, an inner surface, has a triangle in the symmetry plane"
+  says err "if it bounds the fluid, remove it from the list of baffles, sheets or"
+done
 
 # A damaged sidecar.
 sed 's/^zone 2 rotating/zone 2 warm/' all/two.sheets >back.sheets

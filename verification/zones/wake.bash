@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# shellcheck shell=bash disable=SC2154
+# Half of the ONERA M6 with the wake behind its sharp trailing edge: layers on
+# wing and wake, and a generated symmetry plane that is cut along the wake.
+
+wake() {
+  local file=$data/field/onera_m6_sharp_te.stp.gz
+  if [ ! -f "$file" ]; then
+    echo "SKIP: there is no $file (--data)"
+    return
+  fi
+  gunzip -c "$file" >wing.stp || return
+  "$vanguard" surface -q wing.stp --half y --hmin 4 --hmax 20 --write stl \
+    --out surface >/dev/null || bad "vanguard surface"
+  python3 "$here/wake.py" surface/wing.stl wake.stl --angle 3.09 --length 400 ||
+    { bad "wake.py"; return; }
+  "$vanguard" mesh -q wake.stl --half y --sheets wake --walls wing,wake \
+    --first 0.02 --layer-count 12 --cells mixed --farfield-lengths 10 \
+    --write foam,b8.ugrid --out mesh >mesh.log || { bad "vanguard mesh"; return; }
+  # Shares of the faces with all layers.
+  awk '$2 ~ /^(wing|wake|wake_back)$/ && NF == 9 { print "  full layers on", $2,
+         $4, "%"; n++; low += $4 < 95 }
+       END { exit !(n == 3 && !low) }' mesh.log || bad "the layers"
+  "$vanguard" check mesh/wake.b8.ugrid >check.log || bad "vanguard check"
+  awk '$6 == "wake" { print "  triangles of the wake:", $2; n = $2 == $3 && $2 == $4 }
+       END { exit !n }' check.log || bad "the wake"
+  cd mesh/wake.openfoam && sound
+}
