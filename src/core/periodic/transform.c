@@ -87,6 +87,20 @@ void vg_periodic_image(const struct vg_periodic *p, const double x[3],
   }
 }
 
+void vg_periodic_vector(const struct vg_periodic *p, int is_back,
+                        const double v[3], double out[3])
+{
+  struct vg_periodic q = *p;
+
+  if (!p->is_rotation) {
+    memcpy(out, v, 3 * sizeof *v);
+    return;
+  }
+  memset(q.centre, 0, sizeof q.centre);
+  if (is_back) q.sine = -q.sine;
+  vg_periodic_image(&q, v, out);
+}
+
 /* Vector area, centroid and area of a patch. */
 struct moments {
   double normal[3], middle[3], area;

@@ -10,12 +10,14 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
 # shellcheck source=tests/cli/duct.bash
 . "$here/duct.bash"
 
-# sector NAME N R: the part between the radii R and 1 of a disk, 1/N of a turn,
-# with coordinates of seven digits.
+# sector NAME N R [WAVE]: the part between the radii R and 1 of a disk, 1/N of a
+# turn, with coordinates of seven digits. The inner side has a wave of this
+# height in the direction of the turn.
 sector() {
-  awk -v n="$2" -v r0="$3" '
+  awk -v n="$2" -v r0="$3" -v wave="${4:-0}" '
     function vertex(i, j, k,  r, t) {
-      r = r0 + (1 - r0) * i / 6
+      r = r0 + wave * sin(6.2831853 * (j % 8) / 8 + 1) * k * (4 - k) / 4
+      r += (1 - r) * i / 6
       t = 2 * atan2(0, -1) / n * j / 8
       printf "vertex %.7g %.7g %.7g\n", r * cos(t), r * sin(t), k / 8
     }
@@ -113,6 +115,44 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   same t1/$boundary/faces ranks/$boundary/faces
 else echo "mpirun is not installed: the ranks are omitted"; fi
 
+# --- layers --------------------------------------------------------------------
+
+# The columns that slide in a periodic patch, and the triangles around them, are
+# the images of those of the other one: at walls that continue through both
+# patches with a slope, at corners, edges with fans, and in two pairs at once.
+sector wave 7 0.3 0.08
+layers() {
+  local name=$1
+  shift
+  vanguard mesh "$name.stl" --flow internal --quiet --hmax 0.12 --first 0.004 \
+    --write b8.ugrid,foam-ascii --out "l_$name" "$@"
+  exits 0
+  vanguard check "l_$name/$name.b8.ugrid"
+  exits 0
+  says out "valid"
+  if command -v jq >/dev/null; then
+    jq -e '.periodic_distance == 0 and .layers.points > 500' \
+      "l_$name/$name.report.json" >out || fail "$name: layers: $(cat out)"
+  fi
+}
+deck wave "patch image" "lo hi"
+layers wave --walls in --cells mixed
+cp wave.stl corner.stl
+deck corner "patch image" "hi lo"
+layers corner --walls in,bot,out --cells hex
+cp wave.stl again.stl
+cp wave.deck again.deck
+layers again --walls in,bot --cells tets --decompose octree --threads 3
+cp box.stl pairs.stl
+cp box.deck pairs.deck
+layers pairs --walls w5,w6 --cells mixed
+vanguard mesh wave.stl --flow internal --quiet --hmax 0.12 --first 0.004 \
+  --write b8.ugrid,foam-ascii --out l_again --walls in --cells mixed --threads 3
+exits 0
+same l_wave/wave.b8.ugrid l_again/wave.b8.ugrid
+same l_wave/wave.openfoam/constant/polyMesh/faces \
+  l_again/wave.openfoam/constant/polyMesh/faces
+
 # --- OpenFOAM ------------------------------------------------------------------
 
 grep -A5 '^    hi$' t1/$boundary/boundary >out
@@ -132,7 +172,7 @@ if command -v checkMesh >/dev/null; then
   set +u
   [ -n "${WM_PROJECT_DIR:-}" ] || foam
   set -u
-  for case in fbox/box t1/ring; do
+  for case in fbox/box t1/ring l_wave/wave l_corner/corner l_pairs/pairs; do
     (cd $case.openfoam && checkMesh -allTopology) >out 2>err
     says out "Coupled point location match"
     says out "Mesh OK."
@@ -174,8 +214,6 @@ refused "wrap is given" --wrap 0.1
 refused "surface_swap is yes" --surface-swap yes
 refused "baffles, sheets or interfaces are given" --sheets w5
 refused "patch 1 w1 is periodic, but layers" --walls w1,w5 --first 0.01
-# Columns that slide in the patches change them in different ways.
-refused "the layers changed them" --walls w5,w6 --first 0.004
 
 # Other diagonals, and other numbers of triangles.
 duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"
