@@ -27,6 +27,10 @@ void vg_periodic_image(const struct vg_periodic *p, const double x[3],
 void vg_periodic_vector(const struct vg_periodic *p, int is_back,
                         const double v[3], double out[3]);
 
+/** Angles in radians about x, y and z, in this order, that give the rotation
+ * together; with libm, for files. 0 for translations. */
+void vg_periodic_angles(const struct vg_periodic *p, double angle[3]);
+
 /** The angle of a rotation in degrees, for reports; from -180 to 180. */
 double vg_periodic_degrees(const struct vg_periodic *p);
 
@@ -37,6 +41,9 @@ double vg_periodic_degrees(const struct vg_periodic *p);
 /* S103: largest distance between a point and its image on a settled surface and
  * in a finished mesh, as a share of the extent of the pair. */
 #define VG_PERIODIC_EXACT 1e-10
+
+/** The reverse: from the image to the patch. */
+struct vg_periodic vg_periodic_reverse(const struct vg_periodic *p);
 
 /** Sets cosine, sine and n for an angle in degrees, from -180 to 180.
  * Angles within VG_PERIODIC_DEGREES of 360 / n, n = 2 to VG_PERIODIC_MOST,
@@ -81,6 +88,13 @@ vg_status vg_periodic_match(const struct vg_mesh *m,
                             const struct vg_periodic *p, double tolerance,
                             struct vg_periodic_match *out,
                             struct vg_error *err);
+
+/** Pairs of patches of a mesh, with their points and faces, for writers. */
+struct vg_periodic_links {
+  size_t n, n_point;                     /* pairs; points of the matches */
+  const struct vg_periodic *pair;        /* [n] */
+  const struct vg_periodic_match *match; /* [n] */
+};
 
 int vg_periodic_matches(const struct vg_periodic_match *match);
 
