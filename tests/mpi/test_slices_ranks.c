@@ -145,8 +145,8 @@ static void any_number_of_ranks(void **state)
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++)
     for (int threads = 1; threads < 3 && is_built(form[i]); threads++) {
-      const struct vg_slices_options o = { threads, 1, i % 2 ? 1000 : 0, 400,
-                                           0 };
+      const struct vg_slices_options o = { threads, 1, i % 2 ? 1000 : 0,
+                                           400,     0, NULL };
 
       check_form(0, form[i], &o);
       for (int k = 1; k < N_MESH && strcmp(form[i], "cogsg") != 0; k++)
@@ -232,7 +232,7 @@ static void one_failure_fails_all_ranks(void **state)
   static const char *const form[] = { "b8.ugrid", "vtu",        "pvtu",
                                       "cogsg",    "su2",        "msh",
                                       "cgns",     "fluent.msh", "surface.vtu" };
-  const struct vg_slices_options o = { 2, 0, 0, 400, 0 };
+  const struct vg_slices_options o = { 2, 0, 0, 400, 0, NULL };
 
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++) {

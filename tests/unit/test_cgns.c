@@ -15,7 +15,7 @@
 
 static void go_round(const struct vg_mesh *m, int is_wide, struct vg_mesh *back)
 {
-  const struct vg_cgns_options o = { is_wide };
+  const struct vg_cgns_options o = { .is_wide = is_wide };
   const char *path = io_temp("round.cgns");
   struct vg_error err = VG_ERROR_INIT;
 

@@ -206,12 +206,78 @@ static void faults(void **unused)
   }
 }
 
+/* Points of two pairs that share edges, in a box of squares: points and images
+ * are in the same order, also along the edge that both pairs move. */
+static void ordered(void **unused)
+{
+  enum { M = 4, SIDE = (M + 1) * (M + 1) };
+  const struct vg_periodic pair[2] = {
+    { .patch = 1, .image = 2, .shift = { 1, 0, 0 } },
+    { .patch = 3, .image = 4, .shift = { 0, 1, 0 } }
+  };
+
+  (void)unused;
+  for (int s = 0; s < 20; s++) {
+    struct vg_periodic_match r[2];
+    struct vg_mesh m = VG_MESH_INIT;
+    size_t at[SIDE * (M + 1)];
+    int is_changed;
+
+    state = (uint64_t)s;
+    m.n_point = SIDE * (M + 1);
+    m.point = vg_alloc(m.n_point, sizeof *m.point);
+    m.tri = vg_alloc(8 * M * M, sizeof *m.tri);
+    m.tri_patch = vg_alloc(8 * M * M, sizeof *m.tri_patch);
+    for (int32_t i = 1; i <= 4; i++) vg_mesh_add_patch(&m, i, NULL);
+    shuffle(m.n_point, at);
+    for (size_t i = 0; i < m.n_point; i++) {
+      const size_t n[3] = { i % (M + 1), i / (M + 1) % (M + 1), i / SIDE };
+
+      for (int k = 0; k < 3; k++) m.point[at[i]][k] = (double)n[k] / M;
+    }
+    for (uint32_t p = 0; p < 4; p++)
+      for (size_t q = 0; q < M * M; q++) {
+        const size_t along = p < 2 ? M + 1 : 1, across = p < 2 ? 1 : M + 1;
+        const size_t a = p % 2 * M * across + q % M * along + q / M * SIDE;
+        const size_t v[4] = { a, a + along, a + along + SIDE, a + SIDE };
+
+        for (int t = 0; t < 2; t++) {
+          for (int k = 0; k < 3; k++) {
+            const int c = k ? k + t : 0;
+
+            m.tri[m.n_tri][p % 2 ? 2 - k : k] = (uint32_t)at[v[c]];
+          }
+          m.tri_patch[m.n_tri++] = p;
+        }
+      }
+    for (int p = 0; p < 2; p++) {
+      assert_int_equal(vg_periodic_match(&m, &pair[p], 1e-9, &r[p], NULL),
+                       VG_OK);
+      assert_true(vg_periodic_matches(&r[p]));
+    }
+    assert_int_equal(vg_periodic_order(&m, 2, r, &is_changed, NULL), VG_OK);
+    assert_true(is_changed);
+    for (int p = 0; p < 2; p++) {
+      vg_periodic_match_release(&r[p]);
+      assert_int_equal(vg_periodic_match(&m, &pair[p], 0, &r[p], NULL), VG_OK);
+      assert_true(vg_periodic_matches(&r[p]));
+      for (size_t e = 0; e < 3 * m.n_tri; e++) {
+        const uint32_t a = m.tri[e / 3][e % 3], b = m.tri[e / 3][(e + 1) % 3];
+
+        if (m.tri_patch[e / 3] != 2 * (uint32_t)p) continue;
+        assert_int_equal(a < b, r[p].point[a] < r[p].point[b]);
+      }
+      vg_periodic_match_release(&r[p]);
+    }
+    vg_mesh_release(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(turns),
-    cmocka_unit_test(found),
-    cmocka_unit_test(refined),
+    cmocka_unit_test(turns),   cmocka_unit_test(found),
+    cmocka_unit_test(refined), cmocka_unit_test(ordered),
     cmocka_unit_test(faults),
   };
 

@@ -309,7 +309,7 @@ static void records_in_parts(void **state)
 
   (void)state;
   for (size_t i = 0; i < N_MESH * sizeof limit / sizeof *limit; i++) {
-    const struct vg_slices_options o = { 2, 1, limit[i / N_MESH], 0, 0 };
+    const struct vg_slices_options o = { 2, 1, limit[i / N_MESH], 0, 0, NULL };
     const char *f = form[i % 2], *path = ugrid_file(f);
     const size_t k = i % N_MESH;
     struct vg_output out = VG_OUTPUT_INIT;
@@ -369,7 +369,7 @@ static void cogsg_case(const struct vg_mesh *m, const struct vg_join_info *in,
                        uint32_t limit, uint64_t seed)
 {
   static const char *const part[] = { "cogsg", "bc", "mapbc" };
-  const struct vg_slices_options o = { 2, 0, limit, 0, 0 };
+  const struct vg_slices_options o = { 2, 0, limit, 0, 0, NULL };
   struct vg_cogsg_info head = VG_COGSG_INFO_INIT;
   char whole[4096], sliced[4096];
   struct vg_error err = VG_ERROR_INIT;

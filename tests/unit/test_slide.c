@@ -367,7 +367,7 @@ static void grow(struct made *a, uint32_t wall, uint32_t wall2, int n)
 
 static vg_status front(struct made *a)
 {
-  return vg_slide_front(&a->g.m, a->n_slide, a->slide, &a->c, a->sizing,
+  return vg_slide_front(&a->g.m, a->n_slide, a->slide, NULL, &a->c, a->sizing,
                         &a->front, &a->failure, &a->err);
 }
 

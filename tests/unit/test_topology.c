@@ -52,8 +52,8 @@ static void build(struct made *s, unsigned walls, unsigned slides,
   for (size_t i = 0; i < s->n_slide; i++)
     if (slides >> s->slide[i].patch & 1) s->slide[n++] = s->slide[i];
   s->n_slide = n;
-  if (vg_topology_build(&s->m, is_wall, n, s->slide, fan_angle, &s->c, &s->t,
-                        &err) != VG_OK)
+  if (vg_topology_build(&s->m, is_wall, n, s->slide, fan_angle, NULL, &s->c,
+                        &s->t, &err) != VG_OK)
     fail_msg("%s", err.text);
 }
 
@@ -731,9 +731,10 @@ static void bad_angles_are_refused(void **state)
 
   (void)state;
   shape_box(&s.m, 2, 1);
-  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -1, &s.c, &s.t, &err),
+  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -1, NULL, &s.c, &s.t,
+                                     &err),
                    VG_ERR_INPUT);
-  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, NAN, &s.c, &s.t,
+  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, NAN, NULL, &s.c, &s.t,
                                      &err),
                    VG_ERR_INPUT);
   assert_null(s.c.column);

@@ -23,6 +23,14 @@ struct vg_periodic {
 void vg_periodic_image(const struct vg_periodic *p, const double x[3],
                        double out[3]);
 
+/** Image of the vector v; its original if `is_back`. */
+void vg_periodic_vector(const struct vg_periodic *p, int is_back,
+                        const double v[3], double out[3]);
+
+/** Angles in radians about x, y and z, in this order, that give the rotation
+ * together; with libm, for files. 0 for translations. */
+void vg_periodic_angles(const struct vg_periodic *p, double angle[3]);
+
 /** The angle of a rotation in degrees, for reports; from -180 to 180. */
 double vg_periodic_degrees(const struct vg_periodic *p);
 
@@ -30,6 +38,12 @@ double vg_periodic_degrees(const struct vg_periodic *p);
 #define VG_PERIODIC_DEGREES 1e-3
 #define VG_PERIODIC_MOST 360
 #define VG_PERIODIC_ZERO 1e-6
+/* S103: largest distance between a point and its image on a settled surface and
+ * in a finished mesh, as a share of the extent of the pair. */
+#define VG_PERIODIC_EXACT 1e-10
+
+/** The reverse: from the image to the patch. */
+struct vg_periodic vg_periodic_reverse(const struct vg_periodic *p);
 
 /** Sets cosine, sine and n for an angle in degrees, from -180 to 180.
  * Angles within VG_PERIODIC_DEGREES of 360 / n, n = 2 to VG_PERIODIC_MOST,
@@ -75,6 +89,13 @@ vg_status vg_periodic_match(const struct vg_mesh *m,
                             struct vg_periodic_match *out,
                             struct vg_error *err);
 
+/** Pairs of patches of a mesh, with their points and faces, for writers. */
+struct vg_periodic_links {
+  size_t n, n_point;                     /* pairs; points of the matches */
+  const struct vg_periodic *pair;        /* [n] */
+  const struct vg_periodic_match *match; /* [n] */
+};
+
 int vg_periodic_matches(const struct vg_periodic_match *match);
 
 void vg_periodic_match_release(struct vg_periodic_match *match);
@@ -91,6 +112,15 @@ vg_status vg_periodic_refine(const struct vg_mesh *m, struct vg_periodic *p,
  * moved. */
 size_t vg_periodic_apply(struct vg_mesh *m, struct vg_periodic *p,
                          const struct vg_periodic_match *match);
+
+/** Renumbers the points of a surface, so that the points of both patches of a
+ * pair are in the same order: each point follows the first of its images.
+ * Faces keep their order. Sets *is_changed if points got other numbers; the
+ * matches then refer to the former ones. O(n log n). VG_ERR_MEMORY.
+ * @param match  [n] of all pairs, successful */
+vg_status vg_periodic_order(struct vg_mesh *m, size_t n,
+                            const struct vg_periodic_match *match,
+                            int *is_changed, struct vg_error *err);
 
 /** Diagonal of the box of both patches. */
 double vg_periodic_extent(const struct vg_mesh *m, const struct vg_periodic *p);

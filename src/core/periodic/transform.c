@@ -87,6 +87,50 @@ void vg_periodic_image(const struct vg_periodic *p, const double x[3],
   }
 }
 
+void vg_periodic_vector(const struct vg_periodic *p, int is_back,
+                        const double v[3], double out[3])
+{
+  struct vg_periodic q = *p;
+
+  if (!p->is_rotation) {
+    memcpy(out, v, 3 * sizeof *v);
+    return;
+  }
+  memset(q.centre, 0, sizeof q.centre);
+  if (is_back) q.sine = -q.sine;
+  vg_periodic_image(&q, v, out);
+}
+
+struct vg_periodic vg_periodic_reverse(const struct vg_periodic *p)
+{
+  struct vg_periodic q = *p;
+
+  q.patch = p->image;
+  q.image = p->patch;
+  q.sine = -p->sine;
+  for (int k = 0; k < 3; k++) q.shift[k] = -p->shift[k];
+  return q;
+}
+
+void vg_periodic_angles(const struct vg_periodic *p, double angle[3])
+{
+  double a[3][3], e[3], sine; /* a[j]: image of the unit vector j */
+
+  for (int j = 0; j < 3; j++) {
+    for (int k = 0; k < 3; k++) e[k] = k == j;
+    vg_periodic_vector(p, 0, e, a[j]);
+  }
+  sine = fmax(-1, fmin(1, -a[0][2]));
+  angle[1] = asin(sine);
+  if (fabs(sine) < 1 - 1e-14) {
+    angle[0] = atan2(a[1][2], a[2][2]);
+    angle[2] = atan2(a[0][1], a[0][0]);
+  } else { /* x and z turn about the same line. */
+    angle[0] = atan2(-a[2][1], a[1][1]);
+    angle[2] = 0;
+  }
+}
+
 /* Vector area, centroid and area of a patch. */
 struct moments {
   double normal[3], middle[3], area;

@@ -341,6 +341,121 @@ done:
   return st;
 }
 
+/* --- periodic patches --- */
+
+/* Numbers of the elements of faces: those of a patch, in the order of its
+ * sections, and their partners. */
+static vg_status add_faces(struct layout *l, int64_t parent, const char *name,
+                           size_t n, const uint64_t *element,
+                           struct vg_error *err)
+{
+  struct vg_cgns_data d = { index_type(l), 2, { 1, n }, element };
+  int32_t *narrow = NULL;
+  vg_status st;
+
+  if (!l->c->places.is_wide) {
+    narrow = vg_alloc(n, sizeof *narrow);
+    if (!narrow) return vg_fail_memory(err, "the periodic patches");
+    for (size_t i = 0; i < n; i++) narrow[i] = (int32_t)element[i];
+    d.value = narrow;
+  }
+  st = vg_cgns_tree_add(l->tree, parent, name, "IndexArray_t", &d, NULL, NULL,
+                        err);
+  free(narrow);
+  return st;
+}
+
+/* The transform of p. Its angles are about x, y and z, in this order. */
+static vg_status add_transform(struct layout *l, int64_t parent,
+                               const struct vg_periodic *p,
+                               struct vg_error *err)
+{
+  static const char *const name[3] = { "RotationCenter", "RotationAngle",
+                                       "Translation" };
+  double angle[3];
+  float v[3][3];
+  int64_t id;
+  vg_status st;
+
+  vg_periodic_angles(p, angle);
+  for (int k = 0; k < 3; k++) {
+    v[0][k] = p->is_rotation ? (float)p->centre[k] : 0;
+    v[1][k] = p->is_rotation ? (float)angle[k] : 0;
+    v[2][k] = p->is_rotation ? 0 : (float)p->shift[k];
+  }
+  VG_TRY(add_empty(l, parent, "GridConnectivityProperty",
+                   "GridConnectivityProperty_t", &id, err));
+  VG_TRY(add_empty(l, id, "Periodic", "Periodic_t", &id, err));
+  for (int i = 0; i < 3 && st >= 0; i++) {
+    const struct vg_cgns_data d = { "R4", 1, { 3, 0 }, v[i] };
+
+    st = vg_cgns_tree_add(l->tree, id, name[i], "DataArray_t", &d, NULL, NULL,
+                          err);
+  }
+done:
+  return st;
+}
+
+static vg_status layout_link(struct layout *l, int64_t parent, size_t number,
+                             const struct vg_periodic *p, size_t n,
+                             const uint64_t *element, const uint64_t *donor,
+                             struct vg_error *err)
+{
+  char name[VG_CGNS_NAME];
+  int64_t id;
+  vg_status st;
+
+  snprintf(name, sizeof name, "Periodic_%zu", number);
+  VG_TRY(add_text(l, parent, name, "GridConnectivity_t", "Zone", &id, err));
+  VG_TRY(add_text(l, id, "GridConnectivityType", "GridConnectivityType_t",
+                  "Abutting1to1", NULL, err));
+  VG_TRY(
+    add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
+  VG_TRY(add_faces(l, id, "PointList", n, element, err));
+  VG_TRY(add_faces(l, id, "PointListDonor", n, donor, err));
+  st = add_transform(l, id, p, err);
+done:
+  return st;
+}
+
+/* Two connections for each pair, from the first patch and from the second. */
+static vg_status layout_periodic(struct layout *l,
+                                 const struct vg_periodic_links *links,
+                                 struct vg_error *err)
+{
+  const struct vg_mesh *m = l->c->frame;
+  const size_t n_face = m->n_tri + m->n_quad;
+  const uint64_t before = l->n_element - n_face;
+  uint64_t *number, *pair = NULL;
+  int64_t id;
+  vg_status st = VG_OK;
+
+  if (!links || !links->n) return VG_OK;
+  number = vg_alloc(n_face, sizeof *number);
+  pair = vg_alloc(2 * n_face, sizeof *pair);
+  if (!number || !pair) VG_TRY(vg_fail_memory(err, "the periodic patches"));
+  for (size_t i = 0; i < n_face; i++) number[l->c->face[i]] = before + i + 1;
+  VG_TRY(add_empty(l, l->zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t",
+                   &id, err));
+  for (size_t i = 0; i < links->n && st >= 0; i++) {
+    const struct vg_periodic reverse = vg_periodic_reverse(&links->pair[i]);
+    size_t n = 0;
+
+    for (size_t f = 0; f < n_face; f++)
+      if (links->match[i].face[f] != VG_PERIODIC_NONE) {
+        pair[n] = number[f];
+        pair[n_face + n++] = number[links->match[i].face[f]];
+      }
+    VG_TRY(layout_link(l, id, 2 * i + 1, &links->pair[i], n, pair,
+                       pair + n_face, err));
+    st = layout_link(l, id, 2 * i + 2, &reverse, n, pair + n_face, pair, err);
+  }
+done:
+  free(number);
+  free(pair);
+  return st;
+}
+
 /* --- the bytes between the arrays --- */
 
 static int by_place(const void *a, const void *b)
@@ -382,6 +497,7 @@ static void note_places(struct vg_cgns *c)
 }
 
 static vg_status make_layout(const char *path, struct layout *l,
+                             const struct vg_cgns_options *o,
                              struct vg_error *err)
 {
   struct vg_cgns_store store = VG_CGNS_STORE_INIT;
@@ -394,6 +510,7 @@ static vg_status make_layout(const char *path, struct layout *l,
   VG_TRY(layout_cells(l, err));
   VG_TRY(layout_zones(l, err));
   VG_TRY(layout_patches(l, err));
+  if (o) VG_TRY(layout_periodic(l, o->links, err));
   st = vg_cgns_tree_close(l->tree, err);
   l->tree = NULL;
   if (st < 0) goto done;
@@ -409,10 +526,10 @@ done:
  * another node. */
 static vg_status make_words(struct layout *l, struct vg_error *err)
 {
-  static const char *const taken[] = { "Zone",       "ZoneType",
-                                       "ZoneBC",     "GridCoordinates",
-                                       "Tetrahedra", "Pyramids",
-                                       "Prisms",     "Hexahedra" };
+  static const char *const taken[] = {
+    "Zone",     "ZoneType", "ZoneBC",    "GridCoordinates",     "Tetrahedra",
+    "Pyramids", "Prisms",   "Hexahedra", "ZoneGridConnectivity"
+  };
   const struct vg_mesh *frame = l->c->frame;
   struct vg_mesh m = { .n_patch = frame->n_patch + frame->n_zone };
 
@@ -471,7 +588,7 @@ vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
   if (!c->array) VG_TRY(vg_fail_memory(err, "the nodes of a CGNS file"));
   VG_TRY(make_words(&l, err));
   VG_TRY(vg_boundary_by_patch(frame, &c->face_first, &c->face, err));
-  st = make_layout(path, &l, err);
+  st = make_layout(path, &l, o, err);
 done:
   free(l.word);
   if (st < 0) vg_cgns_release(c);

@@ -6,6 +6,7 @@
 #define VG_IO_CGNS_PUT_H
 
 #include "core/mesh/mesh.h"
+#include "core/periodic/periodic.h"
 #include "io/stream/stream.h"
 
 enum { VG_CGNS_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
@@ -29,6 +30,7 @@ struct vg_cgns {
 
 struct vg_cgns_options {
   int is_wide; /* use indices of 8 bytes in any case */
+  const struct vg_periodic_links *links; /* NULL: no patch is periodic */
 };
 
 /** Compute the layout. Only the writer of the frame needs it; the others need

@@ -32,12 +32,28 @@ static const struct zone_type {
   const char *name;
 } wall = { 3, "wall" }, inlet = { 4, "pressure-inlet" },
   outlet = { 5, "pressure-outlet" }, symmetry = { 7, "symmetry" },
-  far = { 9, "pressure-far-field" };
+  far = { 9, "pressure-far-field" }, periodic = { 12, "periodic" },
+  shadow = { 8, "shadow" };
 
-static const struct zone_type *zone_type(const struct vg_patch *p)
+/* 1: the patch with this number is the first one of a pair; 2: the second
+ * one; 0: neither. */
+static int side_of(const struct vg_periodic_links *links, int32_t id)
 {
+  for (size_t i = 0; links && i < links->n; i++) {
+    if (links->pair[i].patch == id) return 1;
+    if (links->pair[i].image == id) return 2;
+  }
+  return 0;
+}
+
+static const struct zone_type *zone_type(const struct vg_fluent *f,
+                                         size_t patch)
+{
+  const struct vg_patch *p = &f->frame->patch[patch];
+  const int is_periodic = side_of(f->links, p->id);
   int32_t code = p->bc;
 
+  if (is_periodic) return is_periodic == 1 ? &periodic : &shadow;
   if (code == VG_BC_NONE) code = vg_bc_to_usm3d(p->bc_fun3d);
   switch (code) {
   case 1: return &symmetry;
@@ -220,7 +236,7 @@ static void put_names(struct vg_output *out, const struct vg_fluent *f)
   for (size_t p = 0; p < f->frame->n_patch; p++)
     if (f->start[p] < f->start[p + 1])
       vg_output_format(out, "(45 (%zu %s %s)())\n", PATCHES + p,
-                       zone_type(f->frame->patch + p)->name, f->word[p]);
+                       zone_type(f, p)->name, f->word[p]);
   for (size_t p = f->frame->n_patch; p < n_word; p++)
     vg_output_format(out, "(45 (%zu interior %s)())\n", PATCHES + p,
                      f->word[p]);
@@ -443,12 +459,39 @@ static void put_patch(struct vg_output *out, struct vg_fluent *f, size_t patch,
 
   if (first == end) return;
   put_head(out, PATCHES + patch, f->n_internal + first, end - first,
-           zone_type(f->frame->patch + patch)->code, kind);
+           zone_type(f, patch)->code, kind);
   f->at_patch[patch] = out->written;
   if (!links) vg_output_skip(out, (end - first) * face_line(f, kind));
   for (size_t i = first; links && i < end; i++)
     vg_fluent_put_boundary(out, f, i, links->boundary[f->order[i]] >> 3);
   vg_output_text(out, "))\n");
+}
+
+/* Number of a boundary face in the file, from 1. */
+static unsigned long long periodic_number(const struct vg_fluent *f,
+                                          uint32_t face)
+{
+  return (unsigned long long)(f->n_internal + f->face_at[face] + 1);
+}
+
+/* Pairs of periodic faces. */
+static void put_periodic(struct vg_output *out, const struct vg_fluent *f)
+{
+  for (size_t i = 0; f->links && i < f->links->n; i++) {
+    const struct vg_periodic *p = &f->links->pair[i];
+    const size_t a = vg_mesh_find_patch(f->frame, p->patch);
+
+    vg_output_format(out, "(18 (1 %zx %zx %zx)(\n",
+                     f->start[a + 1] - f->start[a], PATCHES + a,
+                     PATCHES + vg_mesh_find_patch(f->frame, p->image));
+    for (size_t k = f->start[a]; k < f->start[a + 1]; k++) {
+      const uint32_t face = (uint32_t)f->order[k];
+
+      vg_output_format(out, "%llx %llx\n", periodic_number(f, face),
+                       periodic_number(f, f->links->match[i].face[face]));
+    }
+    vg_output_text(out, "))\n");
+  }
 }
 
 /* links: of the whole mesh. With NULL, points, cells and faces are skipped. */
@@ -474,6 +517,17 @@ static void put_all(struct vg_output *out, struct vg_fluent *f,
   put_sheets(out, f, links, sheets);
   for (size_t p = 0; p < m->n_patch; p++) put_patch(out, f, p, links);
   put_names(out, f);
+  put_periodic(out, f);
+}
+
+vg_status vg_fluent_number_faces(struct vg_fluent *f, struct vg_error *err)
+{
+  const size_t n = f->frame->n_tri + f->frame->n_quad;
+
+  f->face_at = vg_alloc(n, sizeof *f->face_at);
+  if (!f->face_at) return vg_fail_memory(err, "the periodic faces");
+  for (size_t i = 0; i < n; i++) f->face_at[f->order[i]] = i;
+  return VG_OK;
 }
 
 void vg_fluent_put_frame(struct vg_output *out, struct vg_fluent *f)
@@ -661,6 +715,7 @@ done:
 
 void vg_fluent_release(struct vg_fluent *f)
 {
+  free(f->face_at);
   free(f->word);
   free(f->start);
   free(f->order);

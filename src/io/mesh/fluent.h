@@ -7,6 +7,7 @@
 #define VG_IO_MESH_FLUENT_H
 
 #include "core/mesh/mesh.h"
+#include "core/periodic/periodic.h"
 #include "io/stream/patch_words.h"
 #include "io/stream/stream.h"
 
@@ -49,8 +50,11 @@ struct vg_fluent {
   /* With zones: [n_cell] number of a cell in the file, in which zones follow
    * each other, and its zone. Slices have none. */
   uint32_t *number, *zone;
-  uint64_t *n_face; /* [2 (n_zone + 1)] faces of the zones of faces, and those
-                       of them with four vertices */
+  const struct vg_periodic_links *links; /* NULL: no patch is periodic */
+  uint64_t *face_at; /* [n_tri + n_quad] with links: place of each face in
+                        `order` */
+  uint64_t *n_face;  /* [2 (n_zone + 1)] faces of the zones of faces, and those
+                        of them with four vertices */
 };
 
 /** Compute the layout.
@@ -61,6 +65,9 @@ vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
                          uint64_t n_internal, uint64_t n_quad,
                          struct vg_fluent *f, struct vg_error *err);
 void vg_fluent_release(struct vg_fluent *f);
+
+/** Number the faces for links; after vg_fluent_plan. VG_ERR_MEMORY. */
+vg_status vg_fluent_number_faces(struct vg_fluent *f, struct vg_error *err);
 
 /** Write the file but skip points, kinds of cells, and faces. */
 void vg_fluent_put_frame(struct vg_output *out, struct vg_fluent *f);

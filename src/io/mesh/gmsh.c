@@ -44,7 +44,7 @@ static size_t count_faces(const struct vg_gmsh *g)
 }
 
 /* Number of a patch, both as a surface and as a physical group. */
-static int32_t tag_of(const struct vg_gmsh *g, size_t patch)
+int32_t vg_gmsh_tag(const struct vg_gmsh *g, size_t patch)
 {
   return g->has_ids ? g->frame->patch[patch].id : (int32_t)patch + 1;
 }
@@ -66,7 +66,8 @@ static void put_head(struct vg_output *out, const struct vg_gmsh *g)
                    g->n_surface + g->n_volume);
   for (size_t p = 0; p < g->frame->n_patch; p++)
     if (!is_empty(g, p))
-      vg_output_format(out, "2 %d \"%s\"\n", (int)tag_of(g, p), g->word[p]);
+      vg_output_format(out, "2 %d \"%s\"\n", (int)vg_gmsh_tag(g, p),
+                       g->word[p]);
   for (size_t v = 0; v < g->n_volume; v++)
     vg_output_format(out, "3 %d \"%s\"\n", (int)(g->volume + (int32_t)v),
                      g->volume_word[v]);
@@ -151,7 +152,7 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
   for (size_t p = 0; p < g->frame->n_patch; p++) {
     if (is_empty(g, p)) continue;
     patch_box(g, p, x, box);
-    put_entity(out, tag_of(g, p), box, tag_of(g, p), 0);
+    put_entity(out, vg_gmsh_tag(g, p), box, vg_gmsh_tag(g, p), 0);
     if (is_first) memcpy(all, box, sizeof all);
     is_first = 0;
     widen(all, box);
@@ -160,8 +161,8 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
   for (int32_t v = 0; v < (int32_t)g->n_volume; v++) {
     put_entity(out, g->volume + v, all, g->volume + v, count_borders(g));
     for (size_t p = 0; p < g->frame->n_patch && count_borders(g); p++) {
-      int32_t inward = -tag_of(g, p); /* surfaces are oriented as our faces,
-                                         inward */
+      int32_t inward = -vg_gmsh_tag(g, p); /* surfaces are oriented as our
+                                         faces, inward */
 
       if (is_border(g, p)) vg_output_i32(out, 1, &inward);
     }
@@ -187,7 +188,7 @@ static void put_nodes_head(struct vg_output *out, const struct vg_gmsh *g)
   if (!count_cells(g)) {
     while (is_empty(g, p)) p++;
     entity[0] = SURFACE;
-    entity[1] = tag_of(g, p);
+    entity[1] = vg_gmsh_tag(g, p);
   }
   vg_output_i32(out, 3, entity);
   put_size(out, n);
@@ -226,7 +227,7 @@ static uint64_t put_faces(struct vg_output *out, const struct vg_gmsh *g,
   const struct vg_mesh *m = g->frame;
 
   if (first == end) return tag;
-  put_block(out, SURFACE, tag_of(g, patch),
+  put_block(out, SURFACE, vg_gmsh_tag(g, patch),
             n_node == 3 ? TRIANGLE : QUADRILATERAL, end - first);
   for (size_t i = first; i < end; i++) {
     size_t f = g->face[i];
@@ -351,6 +352,53 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
     }
   }
 }
+
+/* --- periodic surfaces --- */
+
+/* The image of a point as a matrix of 4 x 4, by rows. */
+static void put_transform(struct vg_output *out, const struct vg_periodic *p)
+{
+  const int64_t n = 16;
+  double a[16] = { [15] = 1 }, zero[3] = { 0 }, e[3], x[3];
+
+  for (int j = 0; j < 3; j++) {
+    for (int k = 0; k < 3; k++) e[k] = k == j;
+    vg_periodic_vector(p, 0, e, x);
+    for (int k = 0; k < 3; k++) a[4 * k + j] = x[k];
+  }
+  vg_periodic_image(p, zero, x);
+  for (int k = 0; k < 3; k++) a[4 * k + 3] = x[k];
+  vg_output_i64(out, 1, &n);
+  vg_output_f64(out, 16, a);
+}
+
+void vg_gmsh_put_periodic(struct vg_output *out, const struct vg_gmsh *g,
+                          const struct vg_periodic_links *links)
+{
+  if (!links || !links->n) return;
+  vg_output_text(out, "$Periodic\n");
+  vg_output_i64(out, 1, &(int64_t){ (int64_t)links->n });
+  for (size_t i = 0; i < links->n; i++) {
+    const struct vg_periodic *p = &links->pair[i];
+    const struct vg_periodic_match *match = &links->match[i];
+    const int32_t tag[3] = {
+      SURFACE, vg_gmsh_tag(g, vg_mesh_find_patch(g->frame, p->image)),
+      vg_gmsh_tag(g, vg_mesh_find_patch(g->frame, p->patch))
+    };
+
+    vg_output_i32(out, 3, tag);
+    put_transform(out, p);
+    vg_output_i64(out, 1, &(int64_t){ (int64_t)match->n_point[0] });
+    for (size_t k = 0; k < links->n_point; k++) {
+      const int64_t node[2] = { (int64_t)match->point[k] + 1, (int64_t)k + 1 };
+
+      if (match->point[k] != VG_PERIODIC_NONE) vg_output_i64(out, 2, node);
+    }
+  }
+  vg_output_text(out, "\n$EndPeriodic\n");
+}
+
+/* --- the whole file --- */
 
 /* Write the file and record the offsets of its parts. */
 static void put_all(struct vg_output *out, const struct vg_gmsh *g,

@@ -6,6 +6,7 @@
 #define VG_IO_MESH_GMSH_PUT_H
 
 #include "core/mesh/mesh.h"
+#include "core/periodic/periodic.h"
 #include "io/stream/patch_words.h"
 #include "io/stream/stream.h"
 
@@ -44,6 +45,15 @@ void vg_gmsh_put(struct vg_output *out, const struct vg_gmsh *g);
  * @param x  coordinates of the boundary points, by their numbers in the mesh */
 void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
                           const double (*x)[3]);
+
+/** Number of a patch as a surface. */
+int32_t vg_gmsh_tag(const struct vg_gmsh *g, size_t patch);
+
+/** Write the section of periodic surfaces after the whole file: the image as a
+ * surface whose master is the patch, with the transform and pairs of points.
+ * Nothing without pairs. Call vg_output_order(out, 0) first. */
+void vg_gmsh_put_periodic(struct vg_output *out, const struct vg_gmsh *g,
+                          const struct vg_periodic_links *links);
 
 /** Write tags and coordinates x [n][3] of points numbered from `point` on. In a
  * shared file, the _seek functions move to their positions first. */

@@ -367,15 +367,9 @@ vg_status vg_slices_write_with(struct vg_comm *comm, const struct vg_slices *s,
     case FORM_PART:
       st = vg_slices_write_part(comm, s, path, o->threads, err);
       break;
-    case FORM_GMSH:
-      st = vg_slices_write_gmsh(comm, s, path, o->threads, err);
-      break;
-    case FORM_CGNS:
-      st = vg_slices_write_cgns(comm, s, path, o->threads, err);
-      break;
-    case FORM_FLUENT:
-      st = vg_slices_write_fluent(comm, s, path, o->threads, err);
-      break;
+    case FORM_GMSH: st = vg_slices_write_gmsh(comm, s, path, o, err); break;
+    case FORM_CGNS: st = vg_slices_write_cgns(comm, s, path, o, err); break;
+    case FORM_FLUENT: st = vg_slices_write_fluent(comm, s, path, o, err); break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;

@@ -6,6 +6,7 @@
 
 #include "base/comm.h"
 #include "core/mesh/slices.h"
+#include "core/periodic/periodic.h"
 
 struct vg_slices_options {
   int threads; /* number of threads that encode; 0: one per available core */
@@ -16,6 +17,10 @@ struct vg_slices_options {
                             of cells before it passes a multiple of this; 0: 2
                             M */
   int plain;             /* .vtu: 1: without fields of quality */
+  const struct vg_periodic_links *links; /* periodic patches for .cgns,
+                                            .fluent.msh and .msh: points and
+                                            faces of vg_slices_boundary; NULL:
+                                            none. The same on all ranks */
 };
 #define VG_SLICES_OPTIONS_INIT                                                 \
   {                                                                            \

@@ -68,7 +68,8 @@ static vg_status share_places(struct vg_comm *comm, struct vg_cgns_places *p,
 }
 
 vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
-                               const char *path, int threads,
+                               const char *path,
+                               const struct vg_slices_options *o,
                                struct vg_error *err)
 {
   const struct vg_mesh plain = vg_slices_frame(s);
@@ -85,10 +86,11 @@ vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
   st = vg_mesh_sheet_view(&plain, &frame, err);
 
   if (st >= 0 && !vg_comm_rank(comm))
-    st = vg_cgns_plan(path, &frame, NULL, &c, err);
+    st = vg_cgns_plan(path, &frame,
+                      &(struct vg_cgns_options){ .links = o->links }, &c, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(share_places(comm, &c.places, err));
-  st = vg_slice_file_write(&file, comm, s, threads, err);
+  st = vg_slice_file_write(&file, comm, s, o->threads, err);
 done:
   vg_cgns_release(&c);
   vg_mesh_sheet_view_release(&frame, &plain);

@@ -59,6 +59,7 @@ struct writing {
   int rank, size, threads;
   struct vg_mesh frame;
   struct vg_fluent layout;
+  const struct vg_periodic_links *links;
   size_t *start, *order;          /* boundary faces by patch, from the layout */
   uint64_t first[VG_SLICE_KINDS]; /* first cell of each kind in the mesh */
   uint64_t n_internal, n_quad;
@@ -596,6 +597,8 @@ static vg_status write_file(struct writing *w, const char *path,
   vg_status st = vg_fluent_plan(path, &w->frame, w->n_internal, w->n_quad,
                                 &w->layout, err);
 
+  w->layout.links = w->links;
+  if (st >= 0 && w->links) st = vg_fluent_number_faces(&w->layout, err);
   VG_TRY(vg_comm_agree(w->comm, st, err));
   VG_TRY(vg_slice_file_open(&file, w->comm, &w->to, err));
   if (!w->rank) st = vg_slice_file_put(&file, w->to, NULL, err);
@@ -628,13 +631,15 @@ static void release(struct writing *w)
 
 vg_status vg_slices_write_fluent(struct vg_comm *comm,
                                  const struct vg_slices *s, const char *path,
-                                 int threads, struct vg_error *err)
+                                 const struct vg_slices_options *o,
+                                 struct vg_error *err)
 {
   struct writing w = { .comm = comm,
                        .s = s,
                        .rank = vg_comm_rank(comm),
                        .size = vg_comm_size(comm),
-                       .threads = threads > 0 ? threads : vg_cores(),
+                       .threads = o->threads > 0 ? o->threads : vg_cores(),
+                       .links = o->links,
                        .frame = vg_slices_frame(s) };
   vg_status st;
 

@@ -8,6 +8,7 @@
 
 struct gmsh {
   struct vg_gmsh file;
+  const struct vg_periodic_links *links;
   struct vg_boundary_points boundary;
 };
 
@@ -16,6 +17,7 @@ static void put_frame(const void *of, struct vg_output *out)
   const struct gmsh *g = of;
 
   vg_gmsh_put(out, &g->file);
+  vg_gmsh_put_periodic(out, &g->file, g->links);
 }
 
 static void put_slice(void *of, const struct vg_slice *slice,
@@ -57,12 +59,13 @@ static vg_status put_entities(const struct gmsh *g, struct vg_shared_file *to,
 }
 
 vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
-                               const char *path, int threads,
+                               const char *path,
+                               const struct vg_slices_options *o,
                                struct vg_error *err)
 {
   const struct vg_mesh plain = vg_slices_frame(s);
   struct vg_mesh frame;
-  struct gmsh g = { .boundary = { 0, NULL, NULL } };
+  struct gmsh g = { .links = o->links, .boundary = { 0, NULL, NULL } };
   const struct vg_slice_file file = { path, 0, &g, put_frame, put_slice };
   struct vg_shared_file *to;
   vg_status st = vg_mesh_sheet_view(&plain, &frame, err);
@@ -72,7 +75,7 @@ vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
   if (st >= 0) st = vg_boundary_points_new(s, &g.boundary, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_slice_file_open(&file, comm, &to, err));
-  st = vg_slice_file_fill(&file, comm, s, threads, to, err);
+  st = vg_slice_file_fill(&file, comm, s, o->threads, to, err);
   st = vg_comm_agree(comm, st, err);
   if (st >= 0) st = vg_boundary_points_share(comm, &g.boundary, err);
   if (st >= 0 && !vg_comm_rank(comm)) st = put_entities(&g, to, err);

@@ -104,14 +104,17 @@ vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
                                const char *path, int threads,
                                struct vg_error *err);
 vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
-                               const char *path, int threads,
+                               const char *path,
+                               const struct vg_slices_options *o,
                                struct vg_error *err);
 vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
-                               const char *path, int threads,
+                               const char *path,
+                               const struct vg_slices_options *o,
                                struct vg_error *err);
 vg_status vg_slices_write_fluent(struct vg_comm *comm,
                                  const struct vg_slices *s, const char *path,
-                                 int threads, struct vg_error *err);
+                                 const struct vg_slices_options *o,
+                                 struct vg_error *err);
 vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,
                                const char *stem,
                                const struct vg_slices_options *o,

@@ -23,6 +23,7 @@ void vg_columns_release(struct vg_columns *c)
   free(c->border_patch);
   free(c->law);
   free(c->path);
+  free(c->is_twin);
   memset(c, 0, sizeof *c);
 }
 

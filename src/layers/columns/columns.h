@@ -130,6 +130,8 @@ struct vg_columns {
                              columns of one root is also a boundary edge. */
   struct vg_growth_law *law; /* [n_law] growth laws. */
   double (*path)[3];         /* [n_path] points of bent columns. */
+  size_t n_twin;             /* n_column, or 0 without periodic patches. */
+  uint8_t *is_twin; /* [n_twin] 1: the column slides in a periodic patch. */
 };
 #define VG_COLUMNS_INIT                                                        \
   {                                                                            \

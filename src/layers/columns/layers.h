@@ -18,6 +18,7 @@
 #include "base/stop.h"
 #include "core/front/front.h"
 #include "core/mesh/mesh.h"
+#include "core/periodic/periodic.h"
 #include "core/sizing/sizing.h"
 #include "layers/columns/columns.h"
 
@@ -59,15 +60,17 @@ struct vg_layer_options {
                            rank alone. */
   struct vg_progress progress;
   struct vg_stop stop; /* Queried between rounds. */
+  size_t n_periodic;
+  const struct vg_periodic *periodic; /* [n_periodic] pairs of patches of the
+                                         surface without layers, matched to
+                                         rounding. */
 };
 /* L1: prisms have three times the volume of tetrahedra of the same height. */
 #define VG_LAYER_END_MIXED 0.6
 #define VG_LAYER_OPTIONS_INIT                                                  \
   {                                                                            \
     NULL, NULL, NULL, 0, 0.95, 0.4, 1, 1.5, 100, 0, 1, NULL, { NULL, NULL },   \
-    {                                                                          \
-      NULL, NULL                                                               \
-    }                                                                          \
+      { NULL, NULL }, 0, NULL                                                  \
   }
 
 /* Most faces of a column from which the search for the opposite surface starts

@@ -10,7 +10,7 @@ struct array {
   size_t bytes;
 };
 
-enum { N_ARRAY = 12 };
+enum { N_ARRAY = 13 };
 
 /* Lists all arrays; the counts in *l must be set. */
 static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
@@ -25,6 +25,7 @@ static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
     { (void **)&c->border_patch, c->n_border * sizeof *c->border_patch },
     { (void **)&c->law, c->n_law * sizeof *c->law },
     { (void **)&c->path, c->n_path * sizeof *c->path },
+    { (void **)&c->is_twin, c->n_twin },
     { (void **)&f->x, f->n_point * sizeof *f->x },
     { (void **)&f->id, f->n_point * sizeof *f->id },
     { (void **)&f->face, f->n_face * sizeof *f->face },

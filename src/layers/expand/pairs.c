@@ -375,7 +375,8 @@ static int shares_root(const struct vg_expand *e, const uint32_t f[3], int k)
 
 /* Columns of a root whose virtual faces are in pairs, or have no other root,
  * are raised together from the wall like those of other roots: their marks are
- * removed. kept: [n_column] scratch, 1: the mark stays. */
+ * removed. Those in periodic patches stay, since both patches of a pair need
+ * the same. kept: [n_column] scratch, 1: the mark stays. */
 static void clear_marks(struct vg_expand *e, uint8_t *kept)
 {
   const struct vg_columns *c = e->columns;
@@ -383,6 +384,7 @@ static void clear_marks(struct vg_expand *e, uint8_t *kept)
   memset(kept, 0, c->n_column);
   for (size_t i = 0; i < c->n_face; i++)
     for (int k = 0; k < 3 && is_wedge(e, i); k++) kept[c->face[i][k]] = 1;
+  for (size_t i = 0; i < c->n_twin; i++) kept[i] |= c->is_twin[i];
   for (size_t i = 1; i < c->n_column; i++) /* All columns of the root. */
     if (c->column[i].root == c->column[i - 1].root) kept[i] |= kept[i - 1];
   for (size_t i = c->n_column; i-- > 1;)

@@ -157,6 +157,7 @@ static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list, size_t n,
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+  vg_twins_agree(w, NULL, w->root_dir, VG_VISIBILITY_KEPT, l.scratch);
 done:
   vg_dir_sweep_free(&l);
   return st;

@@ -265,6 +265,7 @@ vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err)
   VG_TRY(vg_dir_sweep_scratch(w, &l, err));
   vg_parallel_for(w->o->threads, w->c->n_face, VG_GRAIN, normal_body, &l);
   vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, first_body, &l);
+  vg_twins_first(w, l.scratch);
 done:
   vg_dir_sweep_free(&l);
   return st;

@@ -29,6 +29,7 @@
 static void work_release(struct vg_layer_work *w)
 {
   vg_topology_release(&w->t);
+  vg_twins_release(&w->twins);
   free(w->slide);
   free(w->is_wall);
   free(w->is_slide);
@@ -96,6 +97,23 @@ static vg_status roughness(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
+/* A periodic patch is plane if its image is. */
+static void agree_on_planes(struct vg_layer_work *w)
+{
+  for (size_t p = 0; p < w->twins.n; p++) {
+    struct vg_slide *s[2] = { NULL, NULL };
+
+    for (size_t i = 0; i < w->n_slide; i++)
+      for (int k = 0; k < 2; k++)
+        if (w->slide[i].patch == w->twins.patch[p][k]) s[k] = &w->slide[i];
+    if (!s[0] || !s[1] || s[0]->is_plane == s[1]->is_plane) continue;
+    for (int k = 0; k < 2; k++) {
+      s[k]->is_plane = 0;
+      s[k]->axis = -1;
+    }
+  }
+}
+
 static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
 {
   size_t n = 0;
@@ -125,6 +143,8 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
                    "be at least 1",
                    w->o->jump);
   VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
+  VG_TRY(vg_twins_open(w->m, w->o->n_periodic, w->o->periodic, &w->twins, err));
+  agree_on_planes(w);
   st = roughness(w, err);
 done:
   return st;
@@ -240,8 +260,8 @@ static vg_status try_slides(struct vg_layer_work *w, struct vg_front *front,
                             size_t round, size_t *n_bad, struct vg_error *err)
 {
   struct vg_slide_failure failure = { 0 };
-  vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, w->c, w->sizing,
-                                front, &failure, err);
+  vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, &w->twins, w->c,
+                                w->sizing, front, &failure, err);
 
   *n_bad = st == VG_BLOCKED ? failure.n : 0;
   for (size_t i = 0; st == VG_BLOCKED && i < failure.n; i++)
@@ -593,6 +613,35 @@ static void count(const struct vg_layer_work *w, const struct vg_front *front,
                       w->is_slide[front->patch[t]];
 }
 
+/* Columns, of which those without twins in periodic patches have no levels. The
+ * columns of a fan are in the order of their twins. */
+static vg_status topology(struct vg_layer_work *w, struct vg_error *err)
+{
+  uint8_t *is_image = NULL, *alone = NULL;
+  struct vg_columns *c = w->c;
+  vg_status st = VG_OK;
+
+  if (w->twins.n) {
+    is_image = vg_calloc(w->m->n_point, 1);
+    if (!is_image) return vg_fail_memory(err, "the layers");
+    vg_twins_mark_images(&w->twins, w->m->n_point, is_image);
+  }
+  VG_TRY(vg_topology_build(w->m, w->is_wall, w->n_slide, w->slide,
+                           w->o->fan_angle, is_image, c, &w->t, err));
+  if (!w->twins.n) return VG_OK;
+  c->is_twin = vg_calloc(c->n_column, 1);
+  alone = vg_calloc(c->n_column, 1);
+  if (!c->is_twin || !alone) VG_TRY(vg_fail_memory(err, "the layers"));
+  c->n_twin = c->n_column;
+  VG_TRY(vg_twins_find(&w->twins, w->m, c, alone, err));
+  for (size_t i = 0; i < c->n_column; i++)
+    if (alone[i] && !w->t.blocked[i]) w->t.blocked[i] = VG_CAUSE_SLIDE;
+done:
+  free(is_image);
+  free(alone);
+  return st;
+}
+
 static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
                          struct vg_error *err)
 {
@@ -600,8 +649,7 @@ static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
   vg_status st;
 
   VG_TRY(walls(w, err));
-  VG_TRY(vg_topology_build(w->m, w->is_wall, w->n_slide, w->slide,
-                           w->o->fan_angle, w->c, &w->t, err));
+  VG_TRY(topology(w, err));
   VG_TRY(arrays(w, err));
   r->time_topology = vg_clock() - t;
   t = vg_clock();

@@ -29,6 +29,7 @@ struct vg_layer_work {
   uint8_t *is_wall, *is_slide; /* [m->n_patch] flags. */
   double *noise; /* [n_slide] largest distance of the points of a plane patch
                     from its plane; INFINITY: the patch is curved. */
+  struct vg_twins twins;
   struct vg_columns *c;
   struct vg_topology t;
   double (*normal)[3];   /* [n_face] unit normal; 0 for virtual faces. */
@@ -135,6 +136,34 @@ void vg_heights_lower(struct vg_layer_work *w, size_t column, double limit,
  * [n_column], 1 where n or cap changed; may be NULL. */
 vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
                             struct vg_error *err);
+
+/* twins_grow.c ------------------------------------------------------------*/
+
+/* Columns and their twins get the same direction, law, heights and levels, from
+ * whichever of them has less. Without periodic patches nothing happens. The
+ * functions for wanted, allowed and levels return the number of changes; they
+ * and the spreads over neighbours are repeated until nothing changes. */
+
+/** First directions: the mean of both if both see their faces, else one of
+ * them. scratch: [max_valence]. */
+void vg_twins_first(struct vg_layer_work *w, double (*scratch)[3]);
+
+/** The same for later directions, which must keep a share of the visibility;
+ * otherwise `from`. turned: [n_column] columns to process; NULL: all. */
+void vg_twins_agree(struct vg_layer_work *w, const uint8_t *turned,
+                    double (*from)[3], double kept, double (*scratch)[3]);
+
+/** Marks the twins of marked columns. */
+void vg_twins_turned(struct vg_layer_work *w, uint8_t *turned);
+
+/** Lengths and shifts. */
+void vg_twins_farther(struct vg_layer_work *w);
+
+void vg_twins_laws(struct vg_layer_work *w);
+size_t vg_twins_wanted(struct vg_layer_work *w);
+void vg_twins_edges(struct vg_layer_work *w);
+size_t vg_twins_allowed(struct vg_layer_work *w);
+size_t vg_twins_levels(struct vg_layer_work *w);
 
 /* cells.c -----------------------------------------------------------------*/
 

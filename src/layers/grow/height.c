@@ -409,7 +409,9 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
     c->law[p] = w->o->patch[p].law;
   VG_TRY(local_edges(w, err));
   VG_TRY(all_wanted(w, err));
-  VG_TRY(vg_columns_spread(w, lower_wanted, NULL, err));
+  vg_twins_laws(w);
+  do VG_TRY(vg_columns_spread(w, lower_wanted, NULL, err));
+  while (vg_twins_wanted(w));
   for (size_t i = 0; i < c->n_column; i++) {
     double d[VG_LEVELS_MAX + 1];
 
@@ -421,6 +423,7 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
   }
   if (vg_sizing_is_stretched(w->sizing))
     vg_parallel_for(w->o->threads, c->n_column, GRAIN, along_body, w);
+  vg_twins_edges(w);
 done:
   return st;
 }
@@ -647,9 +650,11 @@ vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
     before[i].cap = w->c->column[i].cap;
     before[i].n = w->c->column[i].n;
   }
-  VG_TRY(vg_columns_spread(w, lower_allowed, NULL, err));
+  do VG_TRY(vg_columns_spread(w, lower_allowed, NULL, err));
+  while (vg_twins_allowed(w));
   vg_parallel_for(w->o->threads, n, GRAIN, settle_body, w);
-  VG_TRY(vg_columns_spread(w, lower_level, NULL, err));
+  do VG_TRY(vg_columns_spread(w, lower_level, NULL, err));
+  while (vg_twins_levels(w));
   for (size_t i = 0; moved && i < n; i++)
     moved[i] = before[i].cap != w->c->column[i].cap ||
                before[i].n != w->c->column[i].n;

@@ -208,6 +208,7 @@ void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which)
   struct shift s = { w, which };
 
   vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, shift_body, &s);
+  vg_twins_farther(w);
 }
 
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
@@ -229,6 +230,7 @@ vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+  vg_twins_farther(w);
 done:
   vg_dir_sweep_free(&l);
   free(list);
@@ -277,6 +279,8 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
       memcpy(w->c->column[i].dir, l.to[i], sizeof *l.to);
       turned[i] = 1;
     }
+  vg_twins_turned(w, turned);
+  vg_twins_agree(w, turned, l.from, LEAST_VISIBILITY, l.scratch);
   vg_directions_shift(w, turned);
   for (size_t i = 0; i < w->c->n_column; i++)
     if (w->visibility[i] == 0 && w->allowed[i] > 0) {

@@ -16,10 +16,14 @@
 #include "base/table.h"
 #include "base/team.h"
 #include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 #include "layers/expand/join.h"
 
 #define DEGREE 57.295779513082320877
+/* L33: distance of a periodic column from a plane, relative to the
+ * coordinates. */
+#define ROUNDING 1e-12
 
 enum { GRAIN = 1024 }; /* Faces per chunk. */
 
@@ -333,19 +337,23 @@ static vg_status find_axes(struct judge_job *j, struct vg_error *err)
   return VG_OK;
 }
 
+/* Bent columns in planes are images of periodic columns, exact to rounding. */
 static int leaves_plane(const struct judge_job *j, size_t c)
 {
   const struct vg_column *col = &j->columns->column[c];
-  double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
+  double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3], most = 0;
   int off = 0;
 
   vg_column_points(j->columns, j->surface, c, d, x);
+  if (col->bent != SIZE_MAX)
+    most = ROUNDING * (vg_norm(x[0]) + vg_distance(x[0], x[col->n]));
   for (int i = 0; i < 2; i++)
     for (size_t k = 0; k < 3 && col->slide[i] != VG_NO_INDEX; k++) {
       size_t at = 3 * (size_t)col->slide[i] + k;
 
       if (j->has_axis[at] != 1) continue;
-      for (int l = 0; l <= col->n; l++) off |= x[l][k] != j->axis_at[at];
+      for (int l = 0; l <= col->n; l++)
+        off |= !(fabs(x[l][k] - j->axis_at[at]) <= most);
     }
   return off;
 }

@@ -94,6 +94,9 @@ static void release(struct vg_slide_work *w)
   free(w->new_tri);
   free(w->new_patch);
   free(w->bad);
+  free(w->step);
+  free(w->steps_of);
+  vg_slide_images_release(w);
 }
 
 static vg_status prepare(struct vg_slide_work *w)
@@ -125,6 +128,8 @@ static vg_status prepare(struct vg_slide_work *w)
     w->slide_of[w->slide[i].patch] = (uint32_t)i;
   if (vg_mesh_inner_points(m, &w->copy_of, w->err) || vg_slide_hold(w))
     return VG_ERR_MEMORY;
+  vg_slide_copy_tops(w);
+  if (vg_slide_images_open(w)) return VG_ERR_MEMORY;
   return vg_slide_parts(w);
 }
 
@@ -315,6 +320,7 @@ static vg_status hand_failure(const struct vg_slide_work *w,
 
 vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
+                         const struct vg_twins *twins,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing, struct vg_front *front,
                          struct vg_slide_failure *failure, struct vg_error *err)
@@ -324,6 +330,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                              .sizing = sizing,
                              .n_slide = n_slide,
                              .slide = slide,
+                             .twins = twins,
                              .c = columns,
                              .text = failure->text,
                              .err = err };
@@ -333,13 +340,17 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
   *front = (struct vg_front)VG_FRONT_INIT;
   VG_TRY(prepare(&w));
   VG_TRY(vg_slide_curves(&w));
+  vg_slide_copy_tops(&w);
   w.local = vg_alloc(w.n_x, sizeof *w.local);
   if (!w.local) {
     st = vg_fail_memory(err, "slide patches");
     goto done;
   }
   memset(w.local, 0xff, w.n_x * sizeof *w.local);
-  for (size_t s = 0; s < w.n_part; s++) VG_TRY(vg_slide_remesh(&w, s));
+  for (size_t s = 0; s < w.n_part; s++)
+    if (!vg_slide_is_image(&w, w.part[s].patch)) VG_TRY(vg_slide_remesh(&w, s));
+  VG_TRY(vg_slide_copy_paths(&w));
+  if (!w.n_bad) VG_TRY(vg_slide_copy_faces(&w));
   VG_TRY(assemble(&w, front));
   if (w.n_bad) st = hand_failure(&w, failure);
 done:

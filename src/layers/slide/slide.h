@@ -23,6 +23,7 @@
 
 #include "core/sizing/sizing.h"
 #include "layers/columns/layers.h"
+#include "layers/slide/twins.h"
 
 struct vg_slide {
   uint32_t patch;   /* Index in surface->patch. */
@@ -104,6 +105,13 @@ struct vg_slide_failure {
  * follows `sizing`, but is not smaller than the edges between nearby tops. A
  * patch whose columns all have n = 0 remains unchanged.
  *
+ * The second patch of a periodic pair is the image of the first one: its
+ * triangles, the points of its columns, and the curves that they follow.
+ * Columns with twins are bent, also where they are straight, so that nothing
+ * moves them later.
+ *
+ * @param twins    NULL: no patch is periodic. Twins must have the same number
+ * of levels
  * @param columns  only bent and path change; both are recomputed in every call
  * @param front    out: previous contents are not released. Points: those of the
  *                 surface, in order; tops in the order of columns; new points.
@@ -118,6 +126,7 @@ struct vg_slide_failure {
  * triangle of a remeshed patch. */
 vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
+                         const struct vg_twins *twins,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing, struct vg_front *front,
                          struct vg_slide_failure *failure,

@@ -187,6 +187,16 @@ static int cut(const struct vg_slide_work *w, const struct chain *c,
   return 0;
 }
 
+/* Records a step, if a curve may have images. */
+static vg_status record(struct vg_slide_work *w, struct vg_slide_step step)
+{
+  if (!w->image) return VG_OK;
+  if (vg_reserve(&w->step, &w->cap_step, w->n_step + 1, sizeof *w->step))
+    return vg_fail_memory(w->err, "curves between slide patches");
+  w->step[w->n_step++] = step;
+  return VG_OK;
+}
+
 /* Adds an edge of the new curve to the parts on both sides of chain edge i. */
 static vg_status add_edge(struct vg_slide_work *w, const struct chain *c,
                           size_t i, uint32_t a, uint32_t b)
@@ -200,7 +210,7 @@ static vg_status add_edge(struct vg_slide_work *w, const struct chain *c,
                                                  { a, b } };
   w->edge[w->n_edge++] = (struct vg_slide_edge){ w->part_of[right / 3],
                                                  { b, a } };
-  return VG_OK;
+  return record(w, (struct vg_slide_step){ 1, i, a, b });
 }
 
 static vg_status remove_edges(struct vg_slide_work *w, const struct chain *c,
@@ -211,7 +221,8 @@ static vg_status remove_edges(struct vg_slide_work *w, const struct chain *c,
     return vg_fail_memory(w->err, "curves between slide patches");
   for (size_t i = from; i < to; i++)
     w->gone[w->n_gone++] = vg_slide_key(c->v[i], c->v[i + 1]);
-  return VG_OK;
+  return record(w,
+                (struct vg_slide_step){ 0, 0, (uint32_t)from, (uint32_t)to });
 }
 
 /* An end of a gap in the curve. At a top, h is the length of the edges that
@@ -470,26 +481,138 @@ static int compare(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
+/* Whether chain d is the image of c by pair p. */
+static int is_chain_image(const struct vg_slide_work *w, size_t p,
+                          const struct chain *c, const struct chain *d)
+{
+  if (d->n != c->n) return 0;
+  for (size_t i = 0; i < c->n; i++)
+    if (d->v[i] != w->twins->match[p].point[c->v[i]]) return 0;
+  return 1;
+}
+
+/* Steps along chain d as those of column i along the original of d. */
+static vg_status repeat(struct vg_slide_work *w, size_t p, uint32_t i,
+                        const struct chain *d)
+{
+  const size_t end = w->steps_of[i][1];
+  vg_status st = VG_OK;
+
+  for (size_t k = w->steps_of[i][0]; k < end && st >= 0; k++) {
+    const struct vg_slide_step s = w->step[k];
+    uint32_t a, b;
+
+    if (!s.is_edge) {
+      st = remove_edges(w, d, s.a, s.b);
+      continue;
+    }
+    VG_TRY(vg_slide_image(w, p, s.a, &a));
+    VG_TRY(vg_slide_image(w, p, s.b, &b));
+    st = add_edge(w, d, s.at, a, b);
+  }
+done:
+  return st;
+}
+
+/* The points along two curves, each the image of the other, that exist. */
+static vg_status relate(struct vg_slide_work *w, size_t p, uint32_t i,
+                        uint32_t k)
+{
+  const size_t *a = w->steps_of[i], *b = w->steps_of[k];
+  vg_status st = VG_OK;
+
+  assert(a[1] - a[0] == b[1] - b[0]);
+  for (size_t s = 0; s < a[1] - a[0] && st >= 0; s++)
+    if (w->step[a[0] + s].is_edge)
+      st = vg_slide_set_image(w, p, w->step[a[0] + s].b, w->step[b[0] + s].b);
+  return st;
+}
+
+/* Makes the images of the curve c, which starts at column i, and their images
+ * by other pairs. */
+static vg_status copy_curve(struct vg_slide_work *w, const struct chain *c,
+                            uint32_t i)
+{
+  struct chain d = { 0, 0, 0, NULL, NULL, 0, 0 };
+  vg_status st = VG_OK;
+
+  for (size_t p = 0; w->image && p < w->twins->n && st >= 0; p++) {
+    const uint32_t patch = w->twins->patch[p][0];
+    const uint32_t k = w->twins->column[p][i];
+
+    if ((c->left != patch && c->right != patch) || k == VG_NO_INDEX) continue;
+    if (w->steps_of[k][1]) {
+      st = relate(w, p, i, k);
+      continue;
+    }
+    VG_TRY(follow(w, w->c->column[k].root, w->c->column[k].slide, &d));
+    if (!is_chain_image(w, p, c, &d)) {
+      vg_slide_mark_bad(w, i, c->left, w->m->point[c->v[0]],
+                        "the curve differs from its periodic image");
+      continue;
+    }
+    w->steps_of[k][0] = w->n_step;
+    VG_TRY(repeat(w, p, i, &d));
+    w->steps_of[k][1] = w->n_step;
+    st = copy_curve(w, &d, k);
+  }
+done:
+  free(d.v);
+  free(d.s);
+  return st;
+}
+
+/* Whether the curve is the image of another one. The axis of a rotation is that
+ * of itself. */
+static int is_copied(const struct vg_slide_work *w, const struct chain *c)
+{
+  for (int k = 0; w->image && k < 2; k++) {
+    const size_t p = vg_twins_image(w->twins, k ? c->right : c->left);
+
+    if (p < w->twins->n && w->twins->patch[p][0] != (k ? c->left : c->right))
+      return 1;
+  }
+  return 0;
+}
+
+/* The curve c between two patches, from column i on. */
+static vg_status run(struct vg_slide_work *w, struct chain *c, uint32_t i,
+                     const uint8_t *runs)
+{
+  /* A curve with columns at both ends is handled once, from the column with
+   * the lower index. */
+  const uint32_t j = other_end(w, c, runs);
+  vg_status st = VG_OK;
+
+  if (j != VG_NO_INDEX && j < i) return VG_OK;
+  if (w->image) w->steps_of[i][0] = w->n_step;
+  if (j == VG_NO_INDEX) VG_TRY(run_single(w, c, i));
+  else VG_TRY(run_double(w, c, i, j));
+  if (!w->image || w->steps_of[i][0] == w->n_step) return VG_OK;
+  w->steps_of[i][1] = w->n_step;
+  st = copy_curve(w, c, i);
+done:
+  return st;
+}
+
 vg_status vg_slide_curves(struct vg_slide_work *w)
 {
   struct chain c = { 0, 0, 0, NULL, NULL, 0, 0 };
   uint8_t *runs = vg_calloc(w->c->n_column, 1);
   vg_status st = VG_OK;
 
-  if (!runs) return vg_fail_memory(w->err, "curves between slide patches");
+  if (w->image) w->steps_of = vg_calloc(w->c->n_column, sizeof *w->steps_of);
+  if (!runs || (w->image && !w->steps_of)) {
+    st = vg_fail_memory(w->err, "curves between slide patches");
+    goto done;
+  }
   find_runs(w, runs);
   for (uint32_t i = 0; i < w->c->n_column; i++) {
     const struct vg_column *col = &w->c->column[i];
-    uint32_t j;
 
     if (!runs[i]) continue;
     VG_TRY(follow(w, col->root, col->slide, &c));
-    if (!c.n) continue;
-    j = other_end(w, &c, runs);
-    /* A curve with columns at both ends is handled once, from the column with
-     * the lower index. */
-    if (j == VG_NO_INDEX) VG_TRY(run_single(w, &c, i));
-    else if (j > i) VG_TRY(run_double(w, &c, i, j));
+    if (c.n && !is_copied(w, &c)) VG_TRY(run(w, &c, i, runs));
   }
   if (w->n_gone) qsort(w->gone, w->n_gone, sizeof *w->gone, compare);
 done:

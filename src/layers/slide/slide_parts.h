@@ -33,11 +33,26 @@ struct vg_slide_edge {
   uint32_t part, v[2];
 };
 
+/* A step along a curve: an edge from point a to b in place of the chain edges
+ * from `at` on, or the removal of the chain edges from a to b. */
+struct vg_slide_step {
+  int is_edge;
+  size_t at;
+  uint32_t a, b;
+};
+
+/* Images of new points by a periodic pair. */
+struct vg_slide_images {
+  size_t n, cap;
+  uint32_t *of; /* [n] VG_NO_INDEX: none yet. */
+};
+
 struct vg_slide_work {
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
   size_t n_slide;
   const struct vg_slide *slide;
+  const struct vg_twins *twins; /* NULL: no patch is periodic. */
   struct vg_columns *c;
   uint32_t *slide_of; /* [m->n_patch] index into slide[]. */
   size_t n_x, cap_x;
@@ -69,6 +84,11 @@ struct vg_slide_work {
   size_t n_gone, cap_gone, n_edge, cap_edge;
   uint64_t *gone;
   struct vg_slide_edge *edge;
+  struct vg_slide_images *image; /* [twins->n] */
+  size_t n_step, cap_step;       /* Steps along curves, with twins. */
+  struct vg_slide_step *step;
+  size_t (*steps_of)[2]; /* [n_column] first and last + 1 of the curve that
+                            starts at a column. */
   /* Triangles of remeshed patches. */
   size_t n_new, cap_new, cap_new_patch;
   uint32_t (*new_tri)[3], *new_patch;
@@ -144,6 +164,34 @@ vg_status vg_slide_parts(struct vg_slide_work *w);
  * patches. Fills gone[] and edge[], and bends columns where the curve is not
  * straight. */
 vg_status vg_slide_curves(struct vg_slide_work *w);
+
+/* slide_image.c -----------------------------------------------------------*/
+
+/** Whether the patch is the second one of a pair. */
+int vg_slide_is_image(const struct vg_slide_work *w, uint32_t patch);
+
+vg_status vg_slide_images_open(struct vg_slide_work *w);
+void vg_slide_images_release(struct vg_slide_work *w);
+
+/** The image by pair p of point v of its first patch; new points are added. */
+vg_status vg_slide_image(struct vg_slide_work *w, size_t p, uint32_t v,
+                         uint32_t *is);
+
+/** Sets the image of a new point; other points have theirs. */
+vg_status vg_slide_set_image(struct vg_slide_work *w, size_t p, uint32_t v,
+                             uint32_t is);
+
+/** Moves the tops of twins to their places. */
+void vg_slide_copy_tops(struct vg_slide_work *w);
+
+/** Bends columns with twins, and their twins to the images. */
+vg_status vg_slide_copy_paths(struct vg_slide_work *w);
+
+/** Marks the images of the triangles that are marked in curved patches. */
+void vg_slide_copy_marks(struct vg_slide_work *w);
+
+/** Adds the images of new triangles. */
+vg_status vg_slide_copy_faces(struct vg_slide_work *w);
 
 /* slide_loop.c ------------------------------------------------------------*/
 

@@ -263,6 +263,7 @@ vg_status vg_slide_parts(struct vg_slide_work *w)
   VG_TRY(sort_half_edges(w));
   VG_TRY(plane_parts(w));
   VG_TRY(spread(w));
+  vg_slide_copy_marks(w);
   VG_TRY(split(w));
   VG_TRY(
     bucket(w->m->n_tri, w->part_of, w->n_part, &w->tri_first, &w->tri, w->err));

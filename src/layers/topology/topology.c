@@ -95,6 +95,47 @@ static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
   return VG_OK;
 }
 
+/* The column in the place of column i after the reversal. */
+static uint32_t reversed(const struct vg_wall *w, const struct vg_fans *f,
+                         const uint8_t *is_reversed, const struct vg_columns *c,
+                         uint32_t i)
+{
+  size_t lo = 0, n = w->n_point;
+
+  if (!is_reversed[c->column[i].root]) return i;
+  while (n > 1) { /* The last point whose columns begin at i or before. */
+    const size_t half = n / 2;
+
+    if (f->first[lo + half] <= i) lo += half;
+    n -= half;
+  }
+  return f->first[lo] + f->first[lo + 1] - 1 - i;
+}
+
+/* Reverses the order of the columns of a root. */
+static void reverse(const struct vg_wall *w, const struct vg_fans *f,
+                    const uint8_t *is_reversed, struct vg_columns *c,
+                    struct vg_topology *t)
+{
+  for (size_t k = 0; k < 3 * c->n_face; k++)
+    c->face[k / 3][k % 3] = reversed(w, f, is_reversed, c,
+                                     c->face[k / 3][k % 3]);
+  for (size_t k = 0; k < 2 * c->n_border; k++)
+    c->border[k / 2][k % 2] = reversed(w, f, is_reversed, c,
+                                       c->border[k / 2][k % 2]);
+  for (uint32_t i = 0; i < c->n_column; i++) {
+    const uint32_t j = reversed(w, f, is_reversed, c, i);
+    const struct vg_column column = c->column[i];
+    const uint8_t preset = t->preset[i];
+
+    if (j <= i) continue;
+    c->column[i] = c->column[j];
+    c->column[j] = column;
+    t->preset[i] = t->preset[j];
+    t->preset[j] = preset;
+  }
+}
+
 /* Corners of each column. A counting sort keeps the faces in order. */
 static vg_status make_corners(const struct vg_columns *c, struct vg_topology *t,
                               struct vg_error *err)
@@ -153,6 +194,7 @@ static vg_status make_near(const struct vg_columns *c, struct vg_topology *t,
 vg_status vg_topology_build(const struct vg_mesh *surface,
                             const uint8_t *is_wall, size_t n_slide,
                             const struct vg_slide *slide, double fan_angle,
+                            const uint8_t *is_reversed,
                             struct vg_columns *columns, struct vg_topology *t,
                             struct vg_error *err)
 {
@@ -170,6 +212,7 @@ vg_status vg_topology_build(const struct vg_mesh *surface,
   VG_TRY(make_columns(&w, &f, &c, &made, err));
   VG_TRY(make_faces(&w, &f, &c, err));
   VG_TRY(make_rims(&w, &f, &c, err));
+  if (is_reversed) reverse(&w, &f, is_reversed, &c, &made);
   VG_TRY(make_corners(&c, &made, err));
   VG_TRY(make_near(&c, &made, err));
   *columns = c;

@@ -52,13 +52,16 @@ void vg_topology_release(struct vg_topology *t);
  * 90 degrees or more from the middle of the other two. Otherwise a fan that
  * tapers onto one column makes flat or inverted cells.
  *
- * @param slide    [n_slide] from vg_slides_find
+ * @param slide        [n_slide] from vg_slides_find
+ * @param is_reversed  [surface->n_point] 1: the columns of the point are in the
+ *                     reverse order around it; NULL: none
  * @param columns  in: empty; untouched on failure, as is *t
  *
  * Cost: O(points + triangles). The same input gives the same bytes. */
 vg_status vg_topology_build(const struct vg_mesh *surface,
                             const uint8_t *is_wall, size_t n_slide,
                             const struct vg_slide *slide, double fan_angle,
+                            const uint8_t *is_reversed,
                             struct vg_columns *columns, struct vg_topology *t,
                             struct vg_error *err);
 

@@ -642,13 +642,15 @@ static vg_status settle_periodic(struct vg_boundary *b, struct vg_display *show,
                                  struct vg_error *err)
 {
   size_t n_moved;
+  int is_changed;
   vg_status st = vg_pairs_settle(&b->read->settings, &b->surface, &b->pairs,
-                                 &n_moved, err);
+                                 &n_moved, &is_changed, err);
 
-  if (st < 0 || !n_moved) return st;
-  vg_note(b->notes,
-          "periodic patches: %zu points were moved to the images of others",
-          n_moved);
+  if (st < 0 || !is_changed) return st;
+  if (n_moved)
+    vg_note(b->notes,
+            "periodic patches: %zu points were moved to the images of others",
+            n_moved);
   VG_TRY(check(b, 0, show, err));
   st = defects(b, show, err);
 done:

@@ -478,14 +478,17 @@ static vg_status extend_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   return st;
 }
 
-static void set_options(struct vg_layer_stage *s, const struct vg_read *read)
+static void set_options(struct vg_layer_stage *s, const struct vg_boundary *b)
 {
+  const struct vg_read *read = b->read;
   const struct vg_settings *set = &read->settings;
   struct vg_layer_options *o = &s->options;
 
   *o = vg_options_layers(set);
   o->is_slab = read->is_section;
   o->patch = s->request;
+  o->n_periodic = b->pairs.n;
+  o->periodic = b->pairs.pair;
   o->law_at = !s->laws ? NULL : s->laws->at.n ? height_at : law_at;
   o->law_user = s->laws;
   s->reynolds = set->layer.reynolds;
@@ -557,7 +560,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   VG_TRY(use_shear(s, b, err));
   vg_note_layers(s, b);
   give_conditions(s, b);
-  set_options(s, b->read);
+  set_options(s, b);
   if (!s->laws || s->has_shear) vg_note_first_heights(s, b);
   s->is_on = 1;
 done:

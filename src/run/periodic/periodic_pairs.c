@@ -201,15 +201,37 @@ done:
   return st;
 }
 
+/* Puts the points of both patches of all pairs in the same order. */
+static vg_status order(const struct vg_pairs *list, struct vg_mesh *m,
+                       int *is_changed, struct vg_error *err)
+{
+  struct vg_periodic_match *match = vg_calloc(list->n, sizeof *match);
+  vg_status st = VG_OK;
+
+  if (!match) return vg_fail_memory(err, "the periodic patches");
+  for (size_t i = 0; i < list->n; i++) {
+    const struct vg_periodic *p = &list->pair[i];
+
+    VG_TRY(vg_periodic_match(m, p, VG_PERIODIC_EXACT * vg_periodic_extent(m, p),
+                             &match[i], err));
+  }
+  st = vg_periodic_order(m, list->n, match, is_changed, err);
+done:
+  for (size_t i = 0; i < list->n; i++) vg_periodic_match_release(&match[i]);
+  free(match);
+  return st;
+}
+
 vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
                           struct vg_pairs *list, size_t *n_moved,
-                          struct vg_error *err)
+                          int *is_changed, struct vg_error *err)
 {
   const size_t n = s->n_periodic;
   double distance;
   vg_status st = VG_OK;
 
   *n_moved = 0;
+  *is_changed = 0;
   vg_pairs_release(list);
   if (!n) return VG_OK;
   list->pair = vg_alloc(n, sizeof *list->pair);
@@ -222,6 +244,8 @@ vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
                          "periodic patches that share edges must have "
                          "transforms that agree there",
                          &distance, err);
+  if (st >= 0) st = order(list, m, is_changed, err);
+  *is_changed |= *n_moved > 0;
   return st;
 }
 

@@ -22,20 +22,18 @@ void vg_pairs_release(struct vg_pairs *list);
  *
  * @param list     replaced
  * @param n_moved  out: points that moved
+ * @param is_changed  out: points moved or were renumbered, so that those of
+ * both patches are in the same order
  *
  * VG_ERR_INPUT for patches that the surface does not have, or that are named
  * twice. VG_ERR_GEOMETRY for patches that do not match: the message has the
  * largest distance and its place. */
 vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
                           struct vg_pairs *list, size_t *n_moved,
-                          struct vg_error *err);
+                          int *is_changed, struct vg_error *err);
 
 /** Whether the patch with this number is in a pair. */
 int vg_pairs_have(const struct vg_pairs *list, int32_t id);
-
-/* S103: largest distance between a point and its image in a finished mesh,
- * as a share of the extent of the pair. */
-#define VG_PERIODIC_EXACT 1e-10
 
 /** Checks the pairs on the boundary m of a mesh, with its points.
  *

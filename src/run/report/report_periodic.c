@@ -34,10 +34,7 @@ void vg_report_periodic_text(FILE *to, size_t n, const struct vg_periodic *p,
     fprintf(to, "    %s triangles each; points moved by at most %.3g\n",
             vg_text_count(p[i].n_face, count), p[i].distance);
   }
-  fprintf(to,
-          "  distance in the mesh: at most %.3g; cyclic patches of OpenFOAM, "
-          "ordinary patches of other formats\n",
-          distance);
+  fprintf(to, "  distance in the mesh: at most %.3g\n", distance);
 }
 
 json_t *vg_report_periodic_json(size_t n, const struct vg_periodic *p)

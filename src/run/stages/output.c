@@ -444,6 +444,7 @@ struct writing {
   struct vg_mesh whole;
   uint32_t *part;
   int is_whole; /* 1: `whole` and `part` have been gathered. */
+  struct vg_output_links links;
 };
 
 static vg_status write_format(const struct writing *w, const char *path,
@@ -521,27 +522,6 @@ done:
   return st;
 }
 
-/* Finds the pieces of a .pvtu by their names. */
-static vg_status add_pieces(struct writing *w, const char *stem,
-                            struct vg_error *err)
-{
-  char suffix[40];
-  vg_status st = VG_OK;
-
-  for (size_t k = 0; st >= 0; k++) {
-    char *path = vg_slices_piece(stem, k);
-    int there;
-
-    if (!path) return vg_fail_memory(err, "the output paths");
-    there = access(path, F_OK) == 0;
-    free(path);
-    if (!there) break;
-    snprintf(suffix, sizeof suffix, "_%zu.vtu", k);
-    st = vg_outputs_add(w->o, suffix, err);
-  }
-  return st;
-}
-
 static vg_status write_slices(struct writing *w, const char *item,
                               struct vg_error *err)
 {
@@ -556,6 +536,7 @@ static vg_status write_slices(struct writing *w, const char *item,
   vg_status st = VG_OK;
 
   o.threads = w->threads;
+  o.links = w->links.links.n ? &w->links.links : NULL;
   if (asprintf(&stem, "%s/%s", w->o->temp_dir, w->o->name) < 0)
     return vg_fail_memory(err, "the output paths");
   for (size_t i = 0; part[i] && st >= 0; i++)
@@ -564,7 +545,7 @@ static vg_status write_slices(struct writing *w, const char *item,
   if (st >= 0) st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
   if (st >= 0 && part == pair)
     st = vg_slices_write_with(w->comm, w->mesh, stem, pair[1], &o, err);
-  if (st >= 0 && !strcmp(item, "pvtu")) st = add_pieces(w, stem, err);
+  if (st >= 0 && !strcmp(item, "pvtu")) st = vg_outputs_pieces(w->o, stem, err);
   free(stem);
   return st;
 }
@@ -667,12 +648,16 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, struct vg_problem *p,
   vg_status st = VG_OK;
 
   assert(!o->n_open && o->temp_dir);
+  if (p->read.settings.n_periodic)
+    st = vg_output_links_find(&p->boundary.pairs, comm, mesh, threads, &w.links,
+                              err);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (!vg_slices_is_ugrid(o->item[i])) st = write_item(&w, o->item[i], err);
   if (!o->is_guest) vg_outputs_note_sheets(o, mesh->boundary, &p->notes);
   if (st >= 0 && !o->is_guest && vg_outputs_need_sheets(o))
     st = vg_outputs_sheets(o, mesh->boundary, mesh->n_point, cells_of(mesh),
                            &p->notes, err);
+  if (st >= 0) st = vg_outputs_periodic(o, &w.links, err);
   st = vg_comm_agree(comm, st, err);
   if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
   if (st >= 0 && !o->is_guest && layers->is_on)
@@ -683,6 +668,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, struct vg_problem *p,
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     o->file[i].keep_old = hits_input(o, p, o->file[i].suffix) != NULL;
   vg_mesh_release(&w.whole);
+  vg_output_links_release(&w.links);
   free(w.part);
   return vg_comm_agree(comm, st, err);
 }

@@ -91,6 +91,32 @@ vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
                             uint64_t n_point, uint64_t n_cell,
                             struct vg_notes *notes, struct vg_error *err);
 
+/** Registers the pieces of a .pvtu, which are found by their names. */
+vg_status vg_outputs_pieces(struct vg_outputs *o, const char *stem,
+                            struct vg_error *err);
+
+/* Periodic patches of a mesh, by the numbers of its points and faces. */
+struct vg_output_links {
+  struct vg_mesh boundary;
+  struct vg_periodic *pair;        /* [links.n] */
+  struct vg_periodic_match *match; /* [links.n] */
+  struct vg_periodic_links links;
+};
+
+/** Finds them on all ranks. *l: in: zero. Collective. Release also on
+ * failure. */
+vg_status vg_output_links_find(const struct vg_pairs *pairs,
+                               struct vg_comm *comm,
+                               const struct vg_slices *mesh, int threads,
+                               struct vg_output_links *l, struct vg_error *err);
+void vg_output_links_release(struct vg_output_links *l);
+
+/** Writes STEM.periodic.cfg (io/periodic/periodic_cfg.h) for .su2 and .ugrid,
+ * on rank 0. */
+vg_status vg_outputs_periodic(struct vg_outputs *o,
+                              const struct vg_output_links *l,
+                              struct vg_error *err);
+
 /** Parses the write list and determines where files are written. Refuses files
  * that would overwrite an input of p.
  *

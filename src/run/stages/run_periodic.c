@@ -4,9 +4,8 @@
 #include "run/periodic/periodic_pairs.h"
 #include "run/stages/run.h"
 
-static const char layers_differ[] =
-  "the layers changed them in different ways; end the layers before these "
-  "patches, or grow none";
+static const char differ[] = "this is an error of Vanguard; please report it "
+                             "with the project files";
 
 vg_status vg_run_verify_front(const struct vg_run *r,
                               const struct vg_problem *p,
@@ -17,8 +16,7 @@ vg_status vg_run_verify_front(const struct vg_run *r,
 
   if (!p->read.settings.n_periodic) return VG_OK;
   if (!r->rank)
-    st = vg_pairs_verify(&p->boundary.pairs, front, layers_differ, &distance,
-                         err);
+    st = vg_pairs_verify(&p->boundary.pairs, front, differ, &distance, err);
   return vg_comm_agree(r->comm, st, err);
 }
 
@@ -31,8 +29,8 @@ vg_status vg_run_verify_periodic(struct vg_run *r, const struct vg_problem *p,
   if (!p->read.settings.n_periodic) return VG_OK;
   VG_TRY(vg_slices_boundary(r->comm, &r->slices, r->threads, &m, err));
   if (!r->rank)
-    st = vg_pairs_verify(&p->boundary.pairs, &m, layers_differ,
-                         &r->periodic_distance, err);
+    st = vg_pairs_verify(&p->boundary.pairs, &m, differ, &r->periodic_distance,
+                         err);
   st = vg_comm_agree(r->comm, st, err);
 done:
   vg_mesh_release(&m);

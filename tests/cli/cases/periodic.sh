@@ -10,48 +10,8 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
 # shellcheck source=tests/cli/duct.bash
 . "$here/duct.bash"
 
-# sector NAME N R: the part between the radii R and 1 of a disk, 1/N of a turn,
-# with coordinates of seven digits.
-sector() {
-  awk -v n="$2" -v r0="$3" '
-    function vertex(i, j, k,  r, t) {
-      r = r0 + (1 - r0) * i / 6
-      t = 2 * atan2(0, -1) / n * j / 8
-      printf "vertex %.7g %.7g %.7g\n", r * cos(t), r * sin(t), k / 8
-    }
-    function corner(d, e, u, v) {
-      if (d == 1) vertex(u, e * 8, v)
-      if (d == 2) vertex(e * 6, u, v)
-      if (d == 3) vertex(u, v, e * 4)
-    }
-    function facet(d, e, a, b, c, f, g, h) {
-      print "facet normal 0 0 0\nouter loop"
-      corner(d, e, a, b); corner(d, e, c, f); corner(d, e, g, h)
-      print "endloop\nendfacet"
-    }
-    function side(name, d, e,  u, v, nu, nv) {
-      nu = d == 2 ? 8 : 6
-      nv = d == 3 ? 8 : 4
-      print "solid " name
-      for (u = 0; u < nu; u++) for (v = 0; v < nv; v++) {
-        facet(d, e, u, v, u + 1, v, u + 1, v + 1)
-        facet(d, e, u, v, u + 1, v + 1, u, v + 1)
-      }
-      print "endsolid " name
-    }
-    BEGIN {
-      side("lo", 1, 0); side("hi", 1, 1)
-      if (r0 > 0) side("in", 2, 0)
-      side("out", 2, 1); side("bot", 3, 0); side("top", 3, 1)
-    }' </dev/null >"$1.stl"
-}
-
-# deck NAME LINE...: a deck with the table.
-deck() {
-  local name=$1
-  shift
-  { printf 'p\n\nperiodic\n'; printf '%s\n' "$@"; } >"$name.deck"
-}
+# shellcheck source=tests/cli/sector.bash
+. "$here/sector.bash"
 
 # report NAME EXPRESSION: a value of the JSON report is as the jq expression says.
 report() {
@@ -113,6 +73,44 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   same t1/$boundary/faces ranks/$boundary/faces
 else echo "mpirun is not installed: the ranks are omitted"; fi
 
+# --- layers --------------------------------------------------------------------
+
+# The columns that slide in a periodic patch, and the triangles around them, are
+# the images of those of the other one: at walls that continue through both
+# patches with a slope, at corners, edges with fans, and in two pairs at once.
+sector wave 7 0.3 0.08
+layers() {
+  local name=$1
+  shift
+  vanguard mesh "$name.stl" --flow internal --quiet --hmax 0.12 --first 0.004 \
+    --write b8.ugrid,foam-ascii --out "l_$name" "$@"
+  exits 0
+  vanguard check "l_$name/$name.b8.ugrid"
+  exits 0
+  says out "valid"
+  if command -v jq >/dev/null; then
+    jq -e '.periodic_distance == 0 and .layers.points > 500' \
+      "l_$name/$name.report.json" >out || fail "$name: layers: $(cat out)"
+  fi
+}
+deck wave "patch image" "lo hi"
+layers wave --walls in --cells mixed
+cp wave.stl corner.stl
+deck corner "patch image" "hi lo"
+layers corner --walls in,bot,out --cells hex
+cp wave.stl again.stl
+cp wave.deck again.deck
+layers again --walls in,bot --cells tets --decompose octree --threads 3
+cp box.stl pairs.stl
+cp box.deck pairs.deck
+layers pairs --walls w5,w6 --cells mixed
+vanguard mesh wave.stl --flow internal --quiet --hmax 0.12 --first 0.004 \
+  --write b8.ugrid,foam-ascii --out l_again --walls in --cells mixed --threads 3
+exits 0
+same l_wave/wave.b8.ugrid l_again/wave.b8.ugrid
+same l_wave/wave.openfoam/constant/polyMesh/faces \
+  l_again/wave.openfoam/constant/polyMesh/faces
+
 # --- OpenFOAM ------------------------------------------------------------------
 
 grep -A5 '^    hi$' t1/$boundary/boundary >out
@@ -132,7 +130,7 @@ if command -v checkMesh >/dev/null; then
   set +u
   [ -n "${WM_PROJECT_DIR:-}" ] || foam
   set -u
-  for case in fbox/box t1/ring; do
+  for case in fbox/box t1/ring l_wave/wave l_corner/corner l_pairs/pairs; do
     (cd $case.openfoam && checkMesh -allTopology) >out 2>err
     says out "Coupled point location match"
     says out "Mesh OK."
@@ -174,8 +172,6 @@ refused "wrap is given" --wrap 0.1
 refused "surface_swap is yes" --surface-swap yes
 refused "baffles, sheets or interfaces are given" --sheets w5
 refused "patch 1 w1 is periodic, but layers" --walls w1,w5 --first 0.01
-# Columns that slide in the patches change them in different ways.
-refused "the layers changed them" --walls w5,w6 --first 0.004
 
 # Other diagonals, and other numbers of triangles.
 duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"
