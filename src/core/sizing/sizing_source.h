@@ -10,7 +10,6 @@
 #include <stdatomic.h>
 
 #include "core/sizing/sizing.h"
-#include "core/sizing/sizing_group.h"
 #include "core/sizing/sizing_stretch.h"
 
 /** A bounded-growth source, with the data for quick rejection. */

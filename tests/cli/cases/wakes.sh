@@ -36,7 +36,7 @@ exits 0
 cmp one/wing-sharp.b8.ugrid again/wing-sharp.b8.ugrid ||
   fail "the resolved deck makes another mesh"
 
-# Stretched along the stream: as many cells across, and fewer in all.
+# Stretched along the stream: the same cells across, and fewer in all.
 sed '/^wakes$/,$d' w/wing-sharp.deck >w/t.deck
 printf 'wakes\npatch  stretch\n*      4\n' >>w/t.deck
 vanguard mesh -q -p w/wing-sharp --layers no --deck w/t.deck --out long
