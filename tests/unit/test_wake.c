@@ -222,7 +222,7 @@ static void thick_base(void **state)
 
 static void panels_of_wings(void **state)
 {
-  const struct vg_wake wake = { 2, 0.02, 0.05, 1.02, 0 };
+  const struct vg_wake wake = { 2, 0.02, 0.05, 1.02, 0, 1 };
   const uint8_t all[3] = { 1, 1, 1 }, base[3] = { 0, 1, 0 };
 
   (void)state;
@@ -261,7 +261,7 @@ static void panels_of_wings(void **state)
  * that of its neighbours. */
 static void chord_that_jumps(void **state)
 {
-  const struct vg_wake wake = { 2, 0.02, 0.05, 1, 0 };
+  const struct vg_wake wake = { 2, 0.02, 0.05, 1, 0, 1 };
   const uint8_t all[3] = { 1, 1, 1 };
   struct vg_wake_panels p = VG_WAKE_PANELS_INIT;
   struct vg_trailing t;
@@ -284,12 +284,13 @@ static void chord_that_jumps(void **state)
 
 static void sheet_of_a_panel(void **state)
 {
-  const struct vg_wake wake = { 2, 0.02, 0.05, 1.02, 0 };
+  const struct vg_wake wake = { 2, 0.02, 0.05, 1.02, 0, 1 };
   const struct vg_wake_panel panel = { { { 1, 0, 0 }, { 1, 1, 0 } },
                                        { 1, 0.5 },
                                        0.01 };
   const size_t n = vg_wake_sources_count(&wake);
   struct vg_source *s = calloc(n, sizeof *s);
+  struct vg_wake stretched = wake;
   double flow[3], far = 0, area = 0;
 
   (void)state;
@@ -310,6 +311,13 @@ static void sheet_of_a_panel(void **state)
     assert_int_equal(s[i].kind, VG_SOURCE_TRIANGLE);
   }
   assert_near(area, 2 * 0.75, 1e-9);
+  for (size_t i = 0; i < n; i++) assert_true(s[i].stretch == 0);
+  stretched.stretch = 5;
+  vg_wake_sources(&stretched, &panel, flow, s);
+  for (size_t i = 0; i < n; i++) {
+    assert_true(s[i].stretch == 5);
+    assert_memory_equal(s[i].u, flow, sizeof flow);
+  }
   assert_true(far <= sqrt(5) + 1e-9);
   assert_true(s[n - 1].h0 > 2 * s[0].h0);
   free(s);
@@ -396,7 +404,7 @@ static void cells_along_lines(void **state)
 
 static void a_line_of_a_panel(void **state)
 {
-  const struct vg_wake wake = { 1.5, 0.02, 0.05, 1.02, 0 };
+  const struct vg_wake wake = { 1.5, 0.02, 0.05, 1.02, 0, 1 };
   const struct vg_wake_panel panel = { { { 1, 0, 0 }, { 1, 1, 0 } },
                                        { 1, 1 },
                                        0 };

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "cli/common/process.h"
 #include "io/stream/stream.h"
 #include "partition/store/store.h"
 #include "run/common/folder.h"
@@ -140,15 +141,18 @@ static vg_status check_extra(const struct vg_adapt_options *o,
 static vg_status check_options(const struct vg_adapt_options *o,
                                struct vg_error *err)
 {
+  struct vg_words w = VG_WORDS_INIT;
   vg_status st;
 
   if (!*o->row.solver)
     return vg_fail(err, VG_ERR_INPUT,
                    "no solver: give the program by --solver or in the table "
                    "adapt of the deck");
+  VG_TRY(vg_words_launcher(&w, o->row.solver, o->ranks, o->threads, err));
   VG_TRY(check_metric(&o->row, err));
   st = check_extra(o, err);
 done:
+  vg_words_release(&w);
   return st;
 }
 
@@ -205,13 +209,6 @@ vg_status vg_adapt_record(const struct vg_adapt *a, struct vg_error *err)
   return st;
 }
 
-static double number_at(const json_t *o, const char *name)
-{
-  const json_t *v = json_object_get(o, name);
-
-  return json_is_number(v) ? json_number_value(v) : NAN;
-}
-
 static void take_outputs(const json_t *o, struct vg_adapt_cycle *c)
 {
   const char *name;
@@ -236,23 +233,23 @@ static int take_cycle(const json_t *o, struct vg_adapt_cycle *c)
   int goes_on = json_is_object(o) && !access(c->dir, F_OK);
 
   for (int k = 0; k < VG_ADAPT_N; k++) {
-    const double s = c->is_done[k] ? 0 : number_at(steps, step_names[k]);
+    const double s = c->is_done[k] ? 0 : vg_json_number(steps, step_names[k]);
 
     goes_on = goes_on && isfinite(s);
     c->is_done[k] = goes_on;
     if (goes_on) c->seconds[k] = s;
   }
   if (c->is_done[VG_ADAPT_METRIC]) {
-    c->requested = number_at(o, "requested_cells");
-    c->attempt = (int)number_at(o, "attempt");
+    c->requested = vg_json_number(o, "requested_cells");
+    c->attempt = (int)vg_json_number(o, "attempt");
   }
   if (c->is_done[VG_ADAPT_MESH]) {
-    c->attempt = (int)number_at(o, "attempt");
+    c->attempt = (int)vg_json_number(o, "attempt");
     c->exit_status = json_is_false(json_object_get(o, "meets_limits"));
-    c->cells = number_at(o, "cells");
-    c->points = number_at(o, "points");
-    c->field_cells = number_at(o, "field_cells");
-    c->angle_min = number_at(o, "angle_min");
+    c->cells = vg_json_number(o, "cells");
+    c->points = vg_json_number(o, "points");
+    c->field_cells = vg_json_number(o, "field_cells");
+    c->angle_min = vg_json_number(o, "angle_min");
   }
   if (c->is_done[VG_ADAPT_SOLVE])
     take_outputs(json_object_get(o, "outputs"), c);

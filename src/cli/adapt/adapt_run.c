@@ -232,13 +232,6 @@ done:
   return st;
 }
 
-static double number_at(const json_t *o, const char *first, const char *second)
-{
-  const json_t *v = json_object_get(json_object_get(o, first), second);
-
-  return json_is_number(v) ? json_number_value(v) : NAN;
-}
-
 static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
 {
   char name[300], *path = NULL;
@@ -251,10 +244,10 @@ static void read_report(const struct vg_adapt *a, struct vg_adapt_cycle *c)
   field = json_object_get(o, "plane") ? "plane"
         : json_object_get(o, "field") ? "field"
                                       : "mesh";
-  c->cells = number_at(o, "mesh", "cells");
-  c->points = number_at(o, "mesh", "points");
-  c->field_cells = number_at(o, field, "cells");
-  c->angle_min = number_at(o, field, "angle_min");
+  c->cells = vg_json_number(o, "mesh", "cells");
+  c->points = vg_json_number(o, "mesh", "points");
+  c->field_cells = vg_json_number(o, field, "cells");
+  c->angle_min = vg_json_number(o, field, "angle_min");
   json_decref(o);
   free(path);
 }

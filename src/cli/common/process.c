@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "cli/common/process.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -70,21 +71,38 @@ static char *fill_in(const char *word, size_t len, int ranks, int threads)
   return out;
 }
 
+/* Copy the next word of a command, without its quotes, to word[*len]. Returns
+ * the end of the word, or NULL if a quote is not closed. */
+static const char *take_word(const char *from, char *word, size_t *len)
+{
+  char quote = 0;
+
+  *len = 0;
+  for (; *from && (quote || !isblank((unsigned char)*from)); from++)
+    if (*from == quote) quote = 0;
+    else if (!quote && (*from == '"' || *from == '\'')) quote = *from;
+    else word[(*len)++] = *from;
+  return quote ? NULL : from;
+}
+
 vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
                             int threads, struct vg_error *err)
 {
-  vg_status st = VG_OK;
+  const char *at = launcher  ? launcher
+                 : ranks > 1 ? "mpirun -n {ranks} --bind-to none"
+                             : "";
+  char *word = strdup(at);
+  vg_status st = word ? VG_OK : vg_fail_memory(err, "a command line");
 
-  if (!launcher) launcher = ranks > 1 ? "mpirun -n {ranks} --bind-to none" : "";
-  while (st >= 0) {
+  while (st >= 0 && *(at += strspn(at, " \t"))) {
     size_t len;
 
-    launcher += strspn(launcher, " \t");
-    len = strcspn(launcher, " \t");
-    if (!len) break;
-    st = vg_words_take(w, fill_in(launcher, len, ranks, threads), err);
-    launcher += len;
+    at = take_word(at, word, &len);
+    st = at ? vg_words_take(w, fill_in(word, len, ranks, threads), err)
+            : vg_fail(err, VG_ERR_INPUT,
+                      "a quote in the command %s is not closed", launcher);
   }
+  free(word);
   return st;
 }
 

@@ -30,8 +30,9 @@ vg_status vg_words_add(struct vg_words *w, const char *text,
 vg_status vg_words_pair(struct vg_words *w, const char *name, int64_t v,
                         struct vg_error *err);
 
-/** Add the words of a launcher, separated by blanks, with {ranks} and {threads}
- * replaced. NULL: mpirun, or no launcher for one rank. */
+/** Add the words of a launcher, with {ranks} and {threads} replaced. Blanks
+ * separate words, except in single or double quotes. NULL: mpirun, or no
+ * launcher for one rank. VG_ERR_INPUT: a quote is not closed. */
 vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
                             int threads, struct vg_error *err);
 

@@ -25,27 +25,18 @@ static double rule(const struct vg_sweep_options *o, int k,
   return k == VG_MEMBER_LEVELS ? finer : 1 / finer;
 }
 
-static double number(const json_t *o, const char *first, const char *second,
-                     const char *third)
-{
-  o = json_object_get(o, first);
-  o = json_object_get(o, second);
-  if (third) o = json_object_get(o, third);
-  return json_is_number(o) ? json_number_value(o) : NAN;
-}
-
 void vg_sweep_member(const json_t *report, struct vg_sweep_case *c)
 {
   const char *field = json_object_get(report, "field") ? "field" : "mesh";
   const json_t *layers = json_object_get(report, "layers");
 
   c->is_plane = json_object_get(report, "plane") != NULL;
-  c->member[VG_MEMBER_CELLS] = number(report, "mesh", "cells", NULL);
-  c->member[VG_MEMBER_SURFACE] = number(report, "surface", "quality",
-                                        "edge_mean");
-  c->member[VG_MEMBER_FIELD] = number(report, field, "edge_length", NULL);
-  c->member[VG_MEMBER_FIRST] = number(layers, "all", "first", "mean");
-  c->member[VG_MEMBER_LEVELS] = number(layers, "all", "levels", "mean");
+  c->member[VG_MEMBER_CELLS] = vg_json_number(report, "mesh", "cells");
+  c->member[VG_MEMBER_SURFACE] = vg_json_number(report, "surface", "quality",
+                                                "edge_mean");
+  c->member[VG_MEMBER_FIELD] = vg_json_number(report, field, "edge_length");
+  c->member[VG_MEMBER_FIRST] = vg_json_number(layers, "all", "first", "mean");
+  c->member[VG_MEMBER_LEVELS] = vg_json_number(layers, "all", "levels", "mean");
 }
 
 const struct vg_sweep_case *vg_sweep_before(const struct vg_sweep *s, size_t i)

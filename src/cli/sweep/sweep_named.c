@@ -222,15 +222,6 @@ static const char *const figure_names[VG_FIGURE_N] = { "nodes",
                                                        "trail_requested",
                                                        "trail" };
 
-static double number(const json_t *o, const char *a, const char *b,
-                     const char *c)
-{
-  const char *const key[3] = { a, b, c };
-
-  for (int i = 0; i < 3 && key[i]; i++) o = json_object_get(o, key[i]);
-  return json_is_number(o) ? json_number_value(o) : NAN;
-}
-
 /* Half of the largest extent of the boundary, in reference lengths. */
 static double farfield(const json_t *report, double length)
 {
@@ -265,25 +256,27 @@ void vg_sweep_figures(const json_t *report, const struct vg_sweep_options *o,
   double *f = c->figure;
 
   for (int k = 0; k <= VG_FIGURE_BOUNDARY_QUADS; k++)
-    f[k] = number(report, "size", size[k], NULL);
+    f[k] = vg_json_number(report, "size", size[k]);
   f[VG_FIGURE_LAYER_CELLS] = 0;
   for (int k = 0; k < 4; k++)
-    f[VG_FIGURE_LAYER_CELLS] += number(layers, kind[k], NULL, NULL);
+    f[VG_FIGURE_LAYER_CELLS] += vg_json_number(layers, kind[k]);
   if (o->is_plane)
-    f[VG_FIGURE_LAYER_CELLS] = number(report, "plane", "quadrilaterals", NULL) +
-                               number(report, "plane", "layer_triangles", NULL);
-  f[VG_FIGURE_FIRST] = number(layers, "all", "first", "mean");
-  f[VG_FIGURE_Y_PLUS] = number(layers, "all", "y_plus", "mean");
-  f[VG_FIGURE_GROWTH] = number(layers, "all", "growth", "max");
-  f[VG_FIGURE_FULL] = number(layers, "all", "percent_full", NULL);
+    f[VG_FIGURE_LAYER_CELLS] = vg_json_number(report, "plane",
+                                              "quadrilaterals") +
+                               vg_json_number(report, "plane",
+                                              "layer_triangles");
+  f[VG_FIGURE_FIRST] = vg_json_number(layers, "all", "first", "mean");
+  f[VG_FIGURE_Y_PLUS] = vg_json_number(layers, "all", "y_plus", "mean");
+  f[VG_FIGURE_GROWTH] = vg_json_number(layers, "all", "growth", "max");
+  f[VG_FIGURE_FULL] = vg_json_number(layers, "all", "percent_full");
   f[VG_FIGURE_FARFIELD] = farfield(report, o->length);
   for (int k = 0; k < 2; k++) {
     const char *edge = k ? "trailing_edges" : "leading_edges";
 
-    f[VG_FIGURE_LEAD_ASKED + 2 * k] = number(report, "remesh", edge,
-                                             "requested_percent");
-    f[VG_FIGURE_LEAD + 2 * k] = number(report, "remesh", edge,
-                                       "reached_percent");
+    f[VG_FIGURE_LEAD_ASKED + 2 * k] = vg_json_number(report, "remesh", edge,
+                                                     "requested_percent");
+    f[VG_FIGURE_LEAD + 2 * k] = vg_json_number(report, "remesh", edge,
+                                               "reached_percent");
   }
 }
 
@@ -291,12 +284,12 @@ void vg_sweep_estimates(const json_t *plan, struct vg_sweep_case *c)
 {
   double *f = c->figure;
 
-  f[VG_FIGURE_NODES] = number(plan, "mesh", "points", NULL);
-  f[VG_FIGURE_CELLS] = number(plan, "mesh", "cells", NULL);
-  f[VG_FIGURE_TETRAHEDRA] = number(plan, "mesh", "tetrahedra", NULL);
-  f[VG_FIGURE_PRISMS] = number(plan, "mesh", "prisms", NULL);
+  f[VG_FIGURE_NODES] = vg_json_number(plan, "mesh", "points");
+  f[VG_FIGURE_CELLS] = vg_json_number(plan, "mesh", "cells");
+  f[VG_FIGURE_TETRAHEDRA] = vg_json_number(plan, "mesh", "tetrahedra");
+  f[VG_FIGURE_PRISMS] = vg_json_number(plan, "mesh", "prisms");
   f[VG_FIGURE_LAYER_CELLS] = f[VG_FIGURE_CELLS] -
-                             number(plan, "mesh", "field_cells", NULL);
+                             vg_json_number(plan, "mesh", "field_cells");
 }
 
 /* --- tables -------------------------------------------------------------- */

@@ -39,13 +39,6 @@ static char *find_file(const char *dir, const char *end)
   return path;
 }
 
-static double number_at(const json_t *o, const char *key)
-{
-  const json_t *v = json_object_get(o, key);
-
-  return json_is_number(v) ? json_number_value(v) : NAN;
-}
-
 /* Entries of "files" are paths, or objects with path and digest. */
 static const char *file_name(const json_t *file)
 {
@@ -113,14 +106,14 @@ static void take_parts(const json_t *root, struct vg_sweep_parts *to)
   const json_t *mesh = json_object_get(root, "field");
 
   if (!mesh) mesh = json_object_get(root, "mesh");
-  to->n_part = number_at(made ? made : all, made ? "count" : "leaves");
-  to->balance = number_at(all, "balance");
-  to->near_cells = number_at(near, "cells");
-  to->near_p1 = number_at(near, "angle_min_p1");
-  to->all_p1 = number_at(mesh, "angle_min_p1");
+  to->n_part = vg_json_number(made ? made : all, made ? "count" : "leaves");
+  to->balance = vg_json_number(all, "balance");
+  to->near_cells = vg_json_number(near, "cells");
+  to->near_p1 = vg_json_number(near, "angle_min_p1");
+  to->all_p1 = vg_json_number(mesh, "angle_min_p1");
   to->seconds = all ? 0 : NAN;
   for (size_t k = 0; made && k < sizeof steps / sizeof *steps; k++)
-    to->seconds += number_at(made, steps[k]);
+    to->seconds += vg_json_number(made, steps[k]);
 }
 
 static void read_report(const struct vg_sweep_options *o,
@@ -132,8 +125,8 @@ static void read_report(const struct vg_sweep_options *o,
   const json_t *files = json_object_get(root, "files");
 
   if (!mesh) mesh = json_object_get(root, "mesh");
-  c->angle_min = number_at(mesh, "angle_min");
-  c->peak_memory = number_at(root, "peak_memory_bytes");
+  c->angle_min = vg_json_number(mesh, "angle_min");
+  c->peak_memory = vg_json_number(root, "peak_memory_bytes");
   take_parts(root, &c->parts_made);
   if (c->family) vg_sweep_member(root, c);
   if (o->rule != VG_FAMILY_PLAIN) vg_sweep_figures(root, o, c);

@@ -431,6 +431,8 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
                             const struct vg_source *source, int cones,
                             struct vg_source_set *set, struct vg_error *err)
 {
+  vg_status st;
+
   if (!n) return VG_OK;
   set->bounded = vg_alloc(n, sizeof *set->bounded);
   set->mean = vg_alloc(n, sizeof *set->mean);
@@ -449,7 +451,10 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
   for (size_t i = 0; cones && i < n; i++)
     if (is_vgrid(source[i].kind)) put_shape(options, source + i, set);
   if (cones) find_reach(set);
-  return VG_OK;
+  st = vg_stretched_groups_make(set->n_stretched, set->stretched, &set->groups,
+                                err);
+  if (st < 0) vg_source_release(set);
+  return st;
 }
 
 void vg_source_release(struct vg_source_set *set)
@@ -458,6 +463,7 @@ void vg_source_release(struct vg_source_set *set)
   free(set->mean);
   free(set->reach);
   free(set->stretched);
+  vg_stretched_groups_release(&set->groups);
   memset(set, 0, sizeof *set);
 }
 
@@ -587,15 +593,13 @@ static void join(struct joined *j, const struct vg_size_axes *b)
   }
 }
 
-static void join_source(struct joined *j, const struct vg_stretched *s,
-                        const double x[3])
+static void join_group(struct joined *j, const struct vg_stretched_group *g,
+                       const double x[3])
 {
+  const double most = j->has_axes ? vg_size_axes_most(j->a) : INFINITY;
   struct vg_size_axes a;
 
-  if (j->has_axes && vg_stretched_floor(s, x, x) >= vg_size_axes_most(j->a))
-    return;
-  vg_stretched_at(s, x, &a);
-  join(j, &a);
+  if (vg_stretched_group_at(g, x, most, &a)) join(j, &a);
 }
 
 static void join_map(struct joined *j, const struct vg_source_set *set,
@@ -629,8 +633,8 @@ void vg_source_axes_at(const struct vg_source_set *set, const double x[3],
     vg_size_axes_of(mean, out);
     limit_sizes(out, h);
   }
-  for (size_t i = 0; i < set->n_stretched; i++)
-    join_source(&j, set->stretched + i, x);
+  for (size_t i = 0; i < set->groups.n; i++)
+    join_group(&j, set->groups.item + i, x);
   if (set->metric) join_map(&j, set, x);
   if (!j.has_axes) vg_size_axes_of_metric(j.m, out);
 }

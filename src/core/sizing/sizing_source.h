@@ -38,7 +38,8 @@ struct vg_source_set {
   struct vg_source *mean;     /* [n_mean] scaled VGRID sources */
   double *reach;              /* [n_mean] distance over which the mean varies
                                  next to the source */
-  struct vg_stretched *stretched; /* [n_stretched] */
+  struct vg_stretched *stretched; /* [n_stretched] by their groups */
+  struct vg_stretched_groups groups;
   size_t n_bounded, n_mean, n_stretched;
   int mean_is_stretched;            /* 1: the mean is one of size tensors */
   const struct vg_size_map *map;    /* NULL: no map; neither scaled nor owned */

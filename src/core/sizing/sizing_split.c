@@ -219,15 +219,15 @@ static const struct vg_size *centre_of(struct tensor_cell *c)
 }
 
 /* Does the interpolation miss the source where it is near? */
-static int misses_source(struct tensor_cell *c, const struct vg_stretched *s)
+static int misses_source(void *context, const struct vg_stretched *s)
 {
+  struct tensor_cell *c = context;
   double x[3], f[3], h[6], source[6];
   struct vg_size_axes a;
   struct vg_size found;
   const struct vg_size *exact = &found;
   int is_centre;
 
-  if (vg_stretched_floor(s, c->lo, c->hi) >= c->most) return 0;
   is_centre = vg_stretched_near(s, c->lo, c->hi, x);
   for (int k = 0; k < 3; k++) f[k] = (x[k] - c->lo[k]) / c->y->side;
   interpolate(c, f, h);
@@ -291,16 +291,33 @@ static int misses_samples(struct tensor_cell *c, int sibling)
   return 0;
 }
 
+/* Edges that are short enough for a source at the corners are so in the whole
+ * cell. */
+static int misses_sources(struct tensor_cell *c)
+{
+  const struct vg_stretched_groups *all = &c->y->b->f->set.groups;
+  double h[8][6];
+  int is_missed = 0;
+
+  for (int i = 0; i < 8 && all->n; i++)
+    for (int k = 0; k < 6; k++) h[i][k] = (double)c->corner[i]->h[k];
+  for (size_t i = 0; i < all->n && !is_missed; i++)
+    is_missed = vg_stretched_group_finer(all->item + i, c->lo, c->hi, c->most,
+                                         8, (const double(*)[6])h,
+                                         vg_octree_tolerance(c->y->b),
+                                         misses_source, c);
+  return is_missed;
+}
+
 static int wants_split_tensor(struct tensor_cell *c, int sibling)
 {
   const struct vg_octree_build *b = c->y->b;
   const struct vg_source_set *set = &b->f->set;
-  int is_missed = 0;
+  int is_missed;
 
   if (is_unsampled(b, c->y->side)) return 1;
   if (misses_floor(c)) return 1;
-  for (size_t i = 0; i < set->n_stretched && !is_missed; i++)
-    is_missed = misses_source(c, set->stretched + i);
+  is_missed = misses_sources(c);
   c->cell->floor = fminf(c->cell->floor, (float)c->least);
   c->cell->rest = (float)c->least;
   if (c->y->side <= b->floor * c->least) return 0;

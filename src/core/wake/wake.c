@@ -349,6 +349,10 @@ void vg_wake_sources(const struct vg_wake *w, const struct vg_wake_panel *p,
     }
     strip.h0 = strip.h1 = size_at(w, 0.5 * (s + end)) * chord;
     strip.r0 = w->height * strip.h0 / w->size + 0.5 * p->thickness;
+    if (w->stretch > 1) {
+      strip.stretch = w->stretch;
+      memcpy(strip.u, flow, sizeof strip.u);
+    }
     for (int k = 0; k < 2; k++) {
       memcpy(strip.p0, x[k][0], sizeof strip.p0);
       memcpy(strip.p1, x[0][1], sizeof strip.p1);

@@ -15,11 +15,12 @@
 
 /* A wake, in chords. */
 struct vg_wake {
-  double length; /* > 0 */
-  double size;   /* size across the wake at its trailing edge, > 0 */
-  double height; /* half of its height there, > 0 */
-  double growth; /* >= 1 */
-  double chord;  /* reference chord, a length; 0: the local chord */
+  double length;  /* > 0 */
+  double size;    /* size across the wake at its trailing edge, > 0 */
+  double height;  /* half of its height there, > 0 */
+  double growth;  /* >= 1 */
+  double chord;   /* reference chord, a length; 0: the local chord */
+  double stretch; /* sizes along the stream over those across it, >= 1 */
 };
 
 /* A part of a trailing edge, straight within a part of the wake's height. */

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "run/common/text.h"
@@ -37,4 +38,10 @@ int vg_json_dump(const json_t *o, FILE *to, size_t flags)
   status = !text || fputs(text, to) == EOF ? -1 : 0;
   free(text);
   return status;
+}
+
+double vg_json_number_at(const json_t *o, const char *const *key)
+{
+  for (; *key; key++) o = json_object_get(o, *key);
+  return json_is_number(o) ? json_number_value(o) : NAN;
 }

@@ -27,6 +27,12 @@ void vg_json_forget(void);
  * (run/common/text.h) is true. */
 int vg_json_dump(const json_t *o, FILE *to, size_t flags);
 
+/** The number in o at a path of keys, each in the object of the one before; NAN
+ * without such a number. o may be NULL. key: ends with NULL. */
+double vg_json_number_at(const json_t *o, const char *const *key);
+#define vg_json_number(o, ...)                                                 \
+  vg_json_number_at(o, (const char *const[]){ __VA_ARGS__, NULL })
+
 #define json_object_set_new(o, name, value)                                    \
   vg_json_kept(json_object_set_new(o, name, value))
 #define json_object_set(o, name, value)                                        \

@@ -257,15 +257,25 @@ static vg_status add_probes(struct body *b, struct vg_error *err)
   return VG_OK;
 }
 
+static vg_status refuse_stretch(const struct body *b, struct vg_error *err)
+{
+  if (!b->read->is_section || b->row->stretch == 1) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "wakes: line %zu: stretch is %g, but cells of a section do "
+                 "not stretch; leave the column out",
+                 b->number, b->row->stretch);
+}
+
 static vg_status place_row(struct body *b, struct vg_error *err)
 {
   const struct vg_wake_row *row = b->row;
   const size_t n_patch = b->m.n_patch;
   vg_status st;
 
-  b->wake = (struct vg_wake){ row->length, row->size, row->height, row->growth,
-                              row->chord };
+  b->wake = (struct vg_wake){ row->length, row->size,  row->height,
+                              row->growth, row->chord, row->stretch };
   memset(b->on, 0, n_patch);
+  VG_TRY(refuse_stretch(b, err));
   VG_TRY(vg_patch_ref_mark("wakes", row->patch, row->patch_name, &b->m, n_patch,
                            b->on, err));
   VG_TRY(find_edges(b, err));

@@ -96,6 +96,7 @@ struct vg_wake_row {
   int32_t patch; /* of its trailing edges */
   double length, size, height, growth;
   double chord;                 /* 0: the local chord */
+  double stretch;               /* along the stream */
   int stream, up;               /* enum vg_wake_stream, enum vg_wake_up */
   char patch_name[VG_NAME_MAX]; /* as in vg_surface_row */
   char alpha[VG_LIST_MAX], beta[VG_LIST_MAX]; /* lists of angles in degrees */

@@ -87,6 +87,8 @@ static const struct vg_param columns[] = {
             "edges of this growth ratio do" },
   { "chord", AT(chord), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
     .help = "Reference chord; 0: the local chord" },
+  { "stretch", AT(stretch), .type = VG_PARAM_REAL, .lo = 1, .hi = 100,
+    .unit = "", .help = "Edge lengths along the stream over those across it" },
   ANGLES("alpha", alpha,
          "Angles of attack, as in 0,4: one wake for each angle"),
   ANGLES("beta", beta,
@@ -120,6 +122,7 @@ void vg_wake_row_default(struct vg_wake_row *row)
                                .size = 0.02,
                                .height = 0.05,
                                .growth = 1.01,
+                               .stretch = 1,
                                .patch_name = "*",
                                .alpha = "0",
                                .beta = "0" };

@@ -128,6 +128,10 @@ says c/adapt.html "has growth 1.2 and aspect_max 5"
 vanguard adapt -p box.lb8.ugrid -o d
 exits 1
 says err "no solver"
+vanguard adapt -p box.lb8.ugrid -o d1 --solver "./x 'a b"
+exits 1
+says err "a quote in the command ./x 'a b is not closed"
+lacks err "cycle 1"
 vanguard adapt -p box.lb8.ugrid -o d2 --solver true
 exits 1
 says err "nothing to adapt to: give the fields"

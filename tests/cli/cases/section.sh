@@ -128,6 +128,9 @@ awk '/^NPOIN/ { n = $2; next } n-- > 0 && $1 > 1.5 && $1 < 3 {
 wake "patch  up  alpha" "*  z  8"
 exits 1
 says err "the column up names another axis"
+wake "patch  stretch" "*  3"
+exits 1
+says err "cells of a section do not stretch"
 wake "patch  beta" "*  3"
 exits 1
 says err "beta turns the stream out of this plane"

@@ -36,6 +36,26 @@ exits 0
 cmp one/wing-sharp.b8.ugrid again/wing-sharp.b8.ugrid ||
   fail "the resolved deck makes another mesh"
 
+# Stretched along the stream: the same cells across, and fewer in all.
+sed '/^wakes$/,$d' w/wing-sharp.deck >w/t.deck
+printf 'wakes\npatch  stretch\n*      4\n' >>w/t.deck
+vanguard mesh -q -p w/wing-sharp --layers no --deck w/t.deck --out long
+exits 0
+says long/wing-sharp.report.json '"valid": true'
+python3 - one long <<'PY' || fail "cells across the stretched wake"
+import json, sys
+one, long = (json.load(open(f"{f}/wing-sharp.report.json")) for f in sys.argv[1:])
+assert long["mesh"]["cells"] < 0.7 * one["mesh"]["cells"], long["mesh"]["cells"]
+for at in long["wakes"][0]["cells_across"]:
+    assert at["lines"] == at["lines_measured"] > 0, at
+    assert 0.85 * 5 < at["reached_mean"] < 1.4 * 5, at
+PY
+vanguard mesh -q -p w/wing-sharp --layers no --deck w/t.deck --threads 2 \
+  --out long2
+exits 0
+cmp long/wing-sharp.b8.ugrid long2/wing-sharp.b8.ugrid ||
+  fail "the stretched mesh depends on threads"
+
 # A table: two angles of attack, and a larger scale has fewer cells across.
 table() { # COLUMNS VALUES
   sed '/^wakes$/,$d' w/wing-sharp.deck >w/t.deck
@@ -57,6 +77,7 @@ refuses "patch" "farfield" "patch farfield has no trailing edge"
 refuses "patch  length" "*  0" "length"
 refuses "patch  size" "*  0.5" "exceeds the height of the wake"
 refuses "patch  length" "*  0.01" "exceeds the length of the wake"
+refuses "patch  stretch" "*  0.5" "stretch"
 refuses "patch  alpha" "*  0,x" "is not a list of 1 to 16 angles"
 refuses "patch  alpha" "*  61" "is not a list of 1 to 16 angles"
 refuses "patch  stream  up" "*  -x  x" "name the same axis, x"
