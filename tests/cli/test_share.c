@@ -18,8 +18,8 @@ static uint32_t tri[4][3] = {
   { 0, 1, 2 }, { 0, 3, 1 }, { 1, 3, 2 }, { 0, 2, 3 }
 };
 static uint32_t tri_patch[4] = { 0, 1, 1, 0 };
-static struct vg_patch patch[2] = { { 7, 3, 5000, 3, 0, 0, 0, "far" },
-                                    { -2, VG_BC_NONE, 4000, 4, 0, 0, 0,
+static struct vg_patch patch[2] = { { 7, 3, 5000, 3, 0, 0, 0, 0, "far" },
+                                    { -2, VG_BC_NONE, 4000, 4, 0, 0, 0, 0,
                                       "wing" } };
 
 static struct vg_bytes packed(void)
