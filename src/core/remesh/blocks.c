@@ -6,6 +6,7 @@
 #include "core/remesh/blocks_parts.h"
 
 #include <assert.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,8 @@ struct blocks {
                              VG_REF_NONE between blocks. */
   vg_block_body body;
   void *user;
+  atomic_int is_over; /* 1: a block has used up its budget, so that the others
+                         are not needed. */
 };
 
 /* --- from the whole surface to a block ------------------------------------ */
@@ -50,6 +53,7 @@ static vg_status room(struct vg_block *b, const struct vg_tris *w,
                          .is_sample = w->is_sample,
                          .is_block = 1,
                          .clock = 1,
+                         .budget = (size_t)(w->churn * b->weight),
                          .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");
@@ -167,15 +171,16 @@ done:
 
 static void change(void *context, size_t first, size_t end, int worker)
 {
-  const struct blocks *s = context;
+  struct blocks *s = context;
 
-  for (size_t i = first; i < end; i++) {
+  for (size_t i = first; i < end && !s->is_over; i++) {
     struct vg_block *b = &s->block[i];
 
     b->st = vg_stopped(&s->w->stop, &b->err);
     if (b->st >= 0)
       b->st = extract(s, b, s->map + (size_t)worker * s->w->n_point, &b->err);
     if (b->st >= 0) b->st = s->body(s->user, &b->w, &b->err);
+    if (b->w.is_over) s->is_over = 1;
   }
 }
 
@@ -219,7 +224,7 @@ static vg_status run_blocks(struct blocks *s, struct vg_tris *w, int phase,
   if (!s->block || !s->of || !s->tri || !s->local || !s->map)
     VG_TRY(vg_fail_memory(err, "the blocks of the surface"));
   memset(s->map, 0xff, workers * w->n_point * sizeof *s->map);
-  VG_TRY(vg_blocks_cut(w, s->n, phase, s->of, err));
+  VG_TRY(vg_blocks_cut(w, s->n, phase, s->of, s->block, err));
   VG_TRY(sort_by_block(s, err));
   vg_parallel_for(threads, s->n, 1, change, s);
   for (size_t i = 0; i < s->n; i++) {
@@ -228,7 +233,8 @@ static vg_status run_blocks(struct blocks *s, struct vg_tris *w, int phase,
     st = s->block[i].st;
     goto done;
   }
-  VG_TRY(vg_blocks_join(w, s->n, s->block, threads, err));
+  if (s->is_over) w->is_over = w->ends = 1;
+  else VG_TRY(vg_blocks_join(w, s->n, s->block, threads, err));
 done:
   return st;
 }

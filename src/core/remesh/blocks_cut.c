@@ -21,7 +21,7 @@ struct cutting {
   double *weight;         /* [n_tri] */
   double (*middle)[3];    /* [n_tri] */
   uint32_t *list, *spare; /* [n_tri] Triangles, sorted by block. */
-  uint32_t *block;
+  uint32_t *of;           /* [n_tri] Block of each triangle. */
 };
 
 static double weight_of(const struct vg_tris *w, size_t t)
@@ -98,7 +98,7 @@ static void bisect(const struct cutting *c, uint32_t *list, size_t n,
   int axis, cut;
 
   if (k == 1 || n < 2) {
-    for (size_t i = 0; i < n; i++) c->block[list[i]] = (uint32_t)first;
+    for (size_t i = 0; i < n; i++) c->of[list[i]] = (uint32_t)first;
     return;
   }
   axis = longest_side(c, list, n, &lo, &hi);
@@ -116,13 +116,14 @@ static void bisect(const struct cutting *c, uint32_t *list, size_t n,
 }
 
 vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
-                        uint32_t *block, struct vg_error *err)
+                        uint32_t *of, struct vg_block *block,
+                        struct vg_error *err)
 {
-  struct cutting c = { .w = w, .phase = phase, .block = block };
+  struct cutting c = { .w = w, .phase = phase, .of = of };
   size_t n = 0;
   vg_status st = VG_OK;
 
-  assert(k > 0 && phase >= 0 && (block || !w->n_tri));
+  assert(k > 0 && phase >= 0 && block && (of || !w->n_tri));
   c.weight = vg_alloc(w->n_tri, sizeof *c.weight);
   c.middle = vg_alloc(w->n_tri, sizeof *c.middle);
   c.list = vg_alloc(w->n_tri, sizeof *c.list);
@@ -130,7 +131,7 @@ vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
   if (!c.weight || !c.middle || !c.list || !c.spare)
     VG_TRY(vg_fail_memory(err, "the blocks of the surface"));
   for (uint32_t t = 0; t < w->n_tri; t++) {
-    block[t] = VG_REF_NONE;
+    of[t] = VG_REF_NONE;
     if (vg_tris_removed(w, t)) continue;
     c.weight[t] = weight_of(w, t);
     for (int d = 0; d < 3; d++)
@@ -141,6 +142,8 @@ vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
     c.list[n++] = t;
   }
   bisect(&c, c.list, n, 0, k);
+  for (size_t i = 0; i < n; i++)
+    block[of[c.list[i]]].weight += c.weight[c.list[i]];
 done:
   free(c.weight);
   free(c.middle);

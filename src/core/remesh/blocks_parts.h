@@ -7,6 +7,7 @@
 #include "core/remesh/blocks.h"
 
 struct vg_block {
+  double weight; /* Number of expected points, and some per triangle. */
   size_t n_tri;
   const uint32_t *tri; /* [n_tri] Triangles of the whole surface, ascending. */
   struct vg_tris w;
@@ -21,9 +22,11 @@ struct vg_block {
 };
 
 /** Block of each triangle: 0 to k - 1, or VG_REF_NONE for removed triangles.
- * @param block  out: [n_tri] */
+ * @param of     out: [n_tri]
+ * @param block  [k], in/out: their weights, 0 before */
 vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
-                        uint32_t *block, struct vg_error *err);
+                        uint32_t *of, struct vg_block *block,
+                        struct vg_error *err);
 
 /** Replace the contents of w by the joined blocks. */
 vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,

@@ -46,6 +46,9 @@
 #define NEAR 2      /* rounds in which much too long edges wait */
 #define POLISH2                                                                \
   0.46 /* S21: (sin 42.7 degrees)^2: below, triangles are polished */
+#define CHURN                                                                  \
+  6.0 /* S104: points inserted into a block per expected point; an attempt     \
+         that inserts more has failed */
 #define POLISHES 2 /* rounds, and one more after the last smoothing */
 
 static const char *const cause_names[] = { "corner", "strip", "line",
@@ -189,7 +192,7 @@ static vg_status run(struct vg_remesh_job *j, struct vg_tris *w,
   const size_t n = vg_blocks_number(w);
   vg_status st;
 
-  for (int phase = 0; n > 1 && phase < PHASES; phase++)
+  for (int phase = 0; n > 1 && phase < PHASES && !w->ends; phase++)
     VG_TRY(
       vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads, body, j, err));
   VG_TRY(body(j, w, err));
@@ -485,12 +488,14 @@ done:
 
 /* One attempt: how often intersecting triangles are made smaller, whether
  * failure is final, the width of the neighbourhood in which input triangles are
- * kept next, in edges of the intersecting triangles, and the largest number of
- * intersections at which triangles are made smaller; 0: any number. */
+ * kept next, in edges of the intersecting triangles, the largest number of
+ * intersections at which triangles are made smaller, 0: any number, and whether
+ * an attempt that inserts points again and again ends. */
 struct attempt {
   int mends, last;
   double rings;
   size_t few;
+  int is_bounded;
 };
 
 /* Remesh once. Intersecting triangles are made smaller; if that does not help,
@@ -512,6 +517,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                        .coarse = 1,
                        .h_min = r->h_min,
                        .h_max = r->h_max,
+                       .churn = a->is_bounded ? CHURN : 0,
                        .threads = j->o->threads,
                        .keep = j->keep,
                        .stop = j->o->stop };
@@ -523,7 +529,9 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   if (!j->looks) w.coarse = 1 << vg_sizes_levels(&j->ref, w.field, r->h_max);
   VG_TRY(vg_tris_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
-  for (int mend = 0; !*sound && mend < a->mends; mend++) {
+  if (w.is_over) j->n_fault[1] = SIZE_MAX;
+  if (w.is_over && a->last) VG_TRY(refuse_crossing(j, r->crossing_at, err));
+  for (int mend = 0; !w.is_over && !*sound && mend < a->mends; mend++) {
     const int is_end = mend + 1 == a->mends;
 
     if (mend) {
@@ -567,7 +575,7 @@ static vg_status keep(struct vg_remesh_job *j, struct vg_mesh *out,
 
   j->n_source = j->o->n_source;
   for (int i = 1; !sound; i++) {
-    const struct attempt a = { 1, i == KEEPS || j->is_all_kept, 1 << i, 0 };
+    const struct attempt a = { 1, i == KEEPS || j->is_all_kept, 1 << i, 0, 0 };
 
     VG_TRY(make(j, out, &a, &sound, err));
   }
@@ -585,7 +593,7 @@ done:
 static vg_status try_once(struct vg_remesh_job *j, struct vg_mesh *out,
                           int *sound, int *poor, struct vg_error *err)
 {
-  const struct attempt once = { MENDS, 0, 0, FEW };
+  const struct attempt once = { MENDS, 0, 0, FEW, 1 };
   size_t n_bad;
   vg_status st;
 
@@ -629,7 +637,7 @@ static vg_status repeat(struct vg_remesh_job *j, struct vg_mesh *out,
 
   for (int round = 1; !sound && round <= rounds; round++) {
     const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
-                               !j->strips.n && round == rounds ? 1 : 0, 0 };
+                               !j->strips.n && round == rounds ? 1 : 0, 0, 1 };
 
     VG_TRY(make(j, out, &a, &sound, err));
     if (sound || !j->strips.n) continue;
@@ -740,7 +748,7 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
   VG_TRY(check_options(o, err));
   VG_TRY(check_stretch(m, o->stretch, err));
   VG_TRY(vg_job_prepare(&j, err));
-  VG_TRY(make(&j, &out, &(struct attempt){ 1, 0, 0, 0 }, &sound, err));
+  VG_TRY(make(&j, &out, &(struct attempt){ 1, 0, 0, 0, 0 }, &sound, err));
   tell(&j, m, &out, report);
 done:
   free(j.r.bad);

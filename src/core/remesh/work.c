@@ -44,7 +44,7 @@ static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
 vg_status vg_tris_status(const struct vg_tris *w, struct vg_error *err)
 {
   if (w->failed) return vg_fail_memory(err, "the remeshed surface");
-  return w->ends ? vg_stopped(&w->stop, err) : VG_OK;
+  return w->ends && !w->is_over ? vg_stopped(&w->stop, err) : VG_OK;
 }
 
 static double bounded(const struct vg_tris *w, const double x[3], double h)

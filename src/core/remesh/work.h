@@ -113,6 +113,11 @@ struct vg_tris {
   uint32_t *spare;    /* Removed triangles, for reuse. */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
+  double churn;  /* S104: blocks insert at most so many points per expected
+                    point; 0: any number. */
+  size_t budget; /* Splits after which no more changes are made; 0: never. */
+  int is_over;   /* 1: the budget has been used up in this surface or one of its
+                    blocks. */
   uint64_t clock;                 /* Number of changes. */
   uint64_t looked[VG_WORK_LOOKS]; /* Clock of the last complete pass of each
                                      kind. */
@@ -128,7 +133,7 @@ static inline int vg_tris_ends(struct vg_tris *w)
 }
 
 /** The reason why no more changes are made: VG_ERR_MEMORY, VG_ERR_STOPPED; else
- * VG_OK. */
+ * VG_OK, also when the budget is used up. */
 vg_status vg_tris_status(const struct vg_tris *w, struct vg_error *err);
 
 static inline uint32_t vg_tris_from(const struct vg_tris *w, uint32_t h)

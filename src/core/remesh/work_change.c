@@ -227,6 +227,10 @@ uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at)
   double s = 0;
 
   if (vg_tris_ends(w) || vg_tris_stays(w, h)) return VG_REF_NONE;
+  if (w->budget && w->n_split >= w->budget) {
+    w->is_over = w->ends = 1;
+    return VG_REF_NONE;
+  }
   vg_cavity_begin(w, &c, a);
   vg_cavity_narrow(w, &c, b);
   middle_of(w, h, at, &p, &s);
