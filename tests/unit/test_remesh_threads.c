@@ -117,6 +117,32 @@ static void same_for_any_threads(void **unused)
   for (int i = 0; i < 2; i++) scene_release(&s[i]);
 }
 
+/* If one block inserts more points than permitted, nothing is changed. */
+static void ends_when_over(void **unused)
+{
+  (void)unused;
+  for (int threads = 1; threads < 4; threads += 2) {
+    struct scene s = { .m = VG_MESH_INIT };
+    size_t sum = 0, n_tri, n_point;
+
+    shape_ball(&s.m, (double[3]){ 1, 1, 1 }, 12);
+    scene_set(&s, TOLERANCE, 0.1);
+    n_tri = s.w.n_tri;
+    n_point = s.w.n_point;
+    s.w.churn = 1e3;
+    run(&s, 6, 0, threads, change_nothing, &sum);
+    assert_false(s.w.is_over || s.w.ends);
+    s.w.churn = 1e-9;
+    run(&s, 6, 0, threads, draw_changes, &sum);
+    assert_true(s.w.is_over && s.w.ends);
+    assert_int_equal(vg_tris_status(&s.w, NULL), VG_OK);
+    assert_int_equal(s.w.n_tri, n_tri);
+    assert_int_equal(s.w.n_point, n_point);
+    scene_expect_whole(&s);
+    scene_release(&s);
+  }
+}
+
 /* If several blocks fail, the first one is reported. */
 static void fails_with_the_first(void **unused)
 {
@@ -140,6 +166,7 @@ int main(void)
     cmocka_unit_test(surface_stays_valid_without_changes),
     cmocka_unit_test(surface_stays_valid_after_changes),
     cmocka_unit_test(same_for_any_threads),
+    cmocka_unit_test(ends_when_over),
     cmocka_unit_test(fails_with_the_first),
   };
 

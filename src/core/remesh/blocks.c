@@ -53,7 +53,9 @@ static vg_status room(struct vg_block *b, const struct vg_tris *w,
                          .is_sample = w->is_sample,
                          .is_block = 1,
                          .clock = 1,
-                         .budget = (size_t)(w->churn * b->weight),
+                         .budget = w->churn > 0
+                                   ? 1 + (size_t)(w->churn * b->weight)
+                                   : 0,
                          .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");

@@ -23,7 +23,7 @@ size_t vg_blocks_number(const struct vg_tris *w);
  *
  * Afterwards only points near block borders and at bad triangles count as
  * changed. Points and triangles are renumbered. If a block inserts more than
- * w->churn points per expected point, w stays as it is, except that it is over.
+ * w->churn points per expected point, w is over and can only be released.
  * @param phase  0, 1, ...: selects the planes. If several blocks fail, the
  * status of the first is returned, and w can only be released. The result is
  * the same for any number of threads. O(n log n). */
