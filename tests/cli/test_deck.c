@@ -145,6 +145,7 @@ static void everything_survives_a_round_trip(void **state)
     ""
   };
   const struct vg_wake_row wake = { .patch = VG_BC_NONE,
+                                    .stretch = 4,
                                     .length = 3,
                                     .size = 0.015625,
                                     .height = 0.0625,
