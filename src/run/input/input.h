@@ -376,9 +376,10 @@ vg_status vg_problem_refuse_section(const struct vg_problem *p,
                                     struct vg_error *err);
 
 /** Width of the cells of a mesh of a section: section_width or the largest
- * chord. slab: its surface (run/section/section_surface.h). */
-double vg_section_width(const struct vg_settings *s,
-                        const struct vg_mesh *slab);
+ * chord. slab: its surface (run/section/section_surface.h), of which the first
+ * patches are the elements. */
+double vg_section_width(const struct vg_settings *s, const struct vg_mesh *slab,
+                        size_t n_element);
 
 /** Writes all faces with a defect to a .vtu, with the kind as a cell field. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

@@ -23,8 +23,13 @@ int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 /** Reads the strip of a plane section, with the conditions of its patches. */
 vg_status vg_read_section(struct vg_read *r, struct vg_error *err);
 
+/** VG_ERR_INPUT if the settings request a farfield that only sections have. */
+vg_status vg_boundary_refuse_plane_farfield(const struct vg_read *r,
+                                            struct vg_error *err);
+
 /** Divides the walls of a section into the requested edges. */
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
+                                     struct vg_display *show,
                                      struct vg_error *err);
 
 /** Adds the farfield and the planes to the walls. */
