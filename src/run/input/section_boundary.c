@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/mesh/format.h"
 #include "io/section/section.h"
 #include "layers/expand/join.h"
 #include "run/input/shape_parts.h"
@@ -23,17 +24,31 @@
 
 enum { EDGES_MIN = 3 };
 
-void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
+/* Whether the input is a plane section by its name or by the settings. */
+static int is_section(const struct vg_read *r, const struct vg_settings *s)
 {
+  return r->is_section ||
+         (s->cad_section && vg_format_is_cad(r->files.surface));
+}
+
+void vg_section_complete(struct vg_read *read, struct vg_settings *s)
+{
+  read->is_section = is_section(read, s);
   if (!read->is_section) return;
+  read->side = VG_SIDE_DEFINED;
   if (s->cells == VG_LAYER_TETS) s->cells = VG_LAYER_HEX;
   if (isnan(s->layer.fan_angle)) s->layer.fan_angle = FAN_ANGLE;
+}
+
+int vg_problem_is_section(const struct vg_problem *p)
+{
+  return is_section(&p->read, &p->asked);
 }
 
 vg_status vg_problem_refuse_section(const struct vg_problem *p,
                                     struct vg_error *err)
 {
-  if (!p->read.is_section) return VG_OK;
+  if (!vg_problem_is_section(p)) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "%s is a plane section, and this command works on surfaces in "
                  "space; vanguard mesh makes the mesh in two dimensions, and "
@@ -79,15 +94,64 @@ vg_status vg_boundary_refuse_plane_farfield(const struct vg_read *r,
                  r->files.stem, kind == VG_DOMAIN_C ? "c" : "tunnel");
 }
 
-vg_status vg_read_section(struct vg_read *r, struct vg_error *err)
+/* The curves of a CAD model as the text of a section. */
+static vg_status write_curves(const struct vg_cad_surface *c, char **text,
+                              size_t *size, struct vg_error *err)
+{
+  FILE *to = open_memstream(text, size);
+  int bad = !to;
+
+  for (size_t i = 0; !bad && i < c->n_segment; i++) {
+    if (i) fprintf(to, "999 999\n");
+    for (uint32_t k = c->segment[i][0]; k <= c->segment[i][1]; k++)
+      fprintf(to, "%.17g %.17g\n", c->mesh.point[k][0], c->mesh.point[k][1]);
+    bad = ferror(to);
+  }
+  if (to) bad |= fclose(to) != 0;
+  return bad ? vg_fail_memory(err, "the curves of a section") : VG_OK;
+}
+
+static vg_status read_curves(struct vg_read *r, struct vg_display *show,
+                             struct vg_section *out, struct vg_error *err)
+{
+  struct vg_cad_options o = vg_options_cad(&r->settings, 0);
+  struct vg_cad_model model = VG_CAD_MODEL_INIT;
+  struct vg_read_info info = { .cad = &o, .model = &model };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_input in = VG_INPUT_INIT;
+  char *text = NULL, name[300];
+  size_t size = 0;
+  vg_status st;
+
+  o.note = vg_read_note_cad;
+  o.user = r->notes;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_mesh_read(r->files.surface, &m, &info, err));
+  if (info.unit) r->unit = info.unit;
+  VG_TRY(write_curves(&model.surface, &text, &size, err));
+  snprintf(name, sizeof name, "%.200s, points along its curves",
+           r->files.surface);
+  VG_TRY(vg_input_memory(name, text, size, &in, err));
+  st = vg_section_parse(&in, out, err);
+done:
+  free(text);
+  vg_input_release(&in);
+  vg_mesh_release(&m);
+  vg_cad_model_release(&model);
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
+}
+
+vg_status vg_read_section(struct vg_read *r, struct vg_display *show,
+                          struct vg_error *err)
 {
   struct vg_section s = VG_SECTION_INIT;
   vg_status st;
 
   VG_TRY(refuse_settings(r, err));
-  VG_TRY(vg_section_read(r->files.surface, &s, err));
+  VG_TRY(vg_section_is(r->files.surface)
+           ? vg_section_read(r->files.surface, &s, err)
+           : read_curves(r, show, &s, err));
   VG_TRY(vg_section_strip(&s, &r->surface, err));
-  r->side = VG_SIDE_DEFINED;
 done:
   vg_section_release(&s);
   return st;
