@@ -108,13 +108,14 @@ static vg_status take_input(vanguard_job *job, struct vg_mesh *copy)
   VG_TRY(vg_settings_check(&p->asked, &job->err));
   VG_TRY(use_sizes(job));
   if (job->project)
-    st = vg_input_find(job->project, job->deck, &p->read.files, &job->err);
+    VG_TRY(vg_input_find(job->project, job->deck, &p->read.files, &job->err));
   else if (job->surface.n_tri)
     st = vg_mesh_copy(copy, &job->surface, &job->err);
   else
     st = vg_fail(&job->err, VG_ERR_USAGE,
                  "no surface: call vanguard_open or "
                  "vanguard_surface before vanguard_mesh");
+  if (st >= 0 && job->project) st = vg_problem_refuse_section(p, &job->err);
 done:
   return st;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "cli/commands/check_surface.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -48,7 +49,8 @@ static vg_status trace_curves(struct vg_boundary *b, struct findings *f,
   struct vg_sizing *field = NULL;
   vg_status st;
 
-  if (!can_be_followed(&b->surface, &b->check)) return VG_OK;
+  if (b->read->is_section || !can_be_followed(&b->surface, &b->check))
+    return VG_OK;
   st = vg_boundary_field(b, &field, err);
   if (st < 0) return st;
   o.field = field;
@@ -160,16 +162,50 @@ static void print_json(const struct vg_check_surface *a,
   json_decref(o);
 }
 
+/* The walls of a section, without the triangles of their strip. */
+static void print_section(const struct vg_boundary *b)
+{
+  const struct vg_mesh *m = &b->surface;
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  printf("\nSection\n  bounding box             %g %g to %g %g\n", lo[0], lo[1],
+         hi[0], hi[1]);
+  printf("  %12s  %12s  %12s  element\n", "edges", "shortest", "longest");
+  for (size_t i = 0, t = 0; i < m->n_patch; i++) {
+    double least = INFINITY, most = 0;
+    char name[VG_NAME_MAX];
+    size_t n = 0;
+
+    /* Two triangles on each edge; the first one begins with its ends. */
+    for (; t < m->n_tri && m->tri_patch[t] == i; t += 2, n++) {
+      const double *p = m->point[m->tri[t][0]], *q = m->point[m->tri[t][1]];
+      const double length = sqrt((q[0] - p[0]) * (q[0] - p[0]) +
+                                 (q[1] - p[1]) * (q[1] - p[1]));
+
+      least = fmin(least, length);
+      most = fmax(most, length);
+    }
+    printf("  %12zu  %12.4g  %12.4g  %s\n", n, least, most,
+           vg_text_clean(m->patch[i].name, name, sizeof name));
+  }
+}
+
 static vg_status print_text(const struct vg_check_surface *a,
                             const struct vg_boundary *b,
                             const struct findings *f, struct vg_error *err)
 {
   vg_status st;
 
-  printf("%s: surface\n\n", a->file);
+  printf("%s: %s\n\n", a->file,
+         b->read->is_section ? "plane section" : "surface");
   vg_report_flow_text(stdout, &b->flow, adds_farfield(b));
   for (size_t i = 0; i < b->notes->n; i++)
     printf("  note: %s\n", b->notes->text[i]);
+  if (b->read->is_section) {
+    print_section(b);
+    return VG_OK;
+  }
   printf("\nSurface\n");
   vg_report_size_text(stdout, &b->surface);
   VG_TRY(vg_report_patches_text(stdout, &b->surface, err));
@@ -235,12 +271,12 @@ static vg_status examine_closed(const struct vg_check_surface *a,
 
 /* The last line for a surface that vanguard mesh accepts, and why defects that
  * were listed do not prevent it. */
-static void print_accepted(const struct vg_flow *f, size_t n_open,
-                           size_t n_defect)
+static void print_accepted(const char *what, const struct vg_flow *f,
+                           size_t n_open, size_t n_defect)
 {
   int closes = n_open && f->kind == VG_FLOW_EXTERNAL && f->axis >= 0;
 
-  printf("  vanguard mesh accepts this surface");
+  printf("  vanguard mesh accepts this %s", what);
   if (closes)
     printf(": the symmetry plane %c = %g closes its %zu open edges",
            "xyz"[f->axis], f -> at, n_open);
@@ -270,6 +306,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   VG_TRY(examine(a, b, &f, show, err));
   body = vg_report_surface_json(&b->surface, &b->check, b->read->unit,
                                 VG_LISTED_DEFECTS);
+  if (p->read.is_section) json_object_del(body, "quality");
   n_note = p->notes.n;
   n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
   n_defect = b->check.n_defect;
@@ -283,7 +320,9 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
     VG_TRY(examine_closed(a, b, &body, err));
   if (a->json) print_json(a, b, &f, body, shape, &why);
   if (shape < 0) st = vg_fail(err, shape, "%s", why.text);
-  else if (!a->json) print_accepted(&b->flow, n_open, n_defect);
+  else if (!a->json)
+    print_accepted(p->read.is_section ? "section" : "surface", &b->flow, n_open,
+                   n_defect);
 done:
   json_decref(body);
   release(&f);

@@ -216,8 +216,8 @@ static vg_status read_settings(const struct arguments *a, struct vg_problem *p,
   vg_status st;
 
   VG_TRY(vg_problem_open(p, a->one.file, a->deck, err));
-  VG_TRY(vg_problem_refuse_section(p, err));
   VG_TRY(vg_cli_apply(&a->kept, s, err));
+  VG_TRY(vg_problem_refuse_section(p, err));
   if (!strcmp(s->write, "auto"))
     snprintf(s->write, sizeof s->write, "lb8.ugrid");
   s->remesh = VG_ANSWER_YES;

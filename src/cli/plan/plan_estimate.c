@@ -33,8 +33,8 @@ static vg_status read_project(const struct vg_plan_options *o,
 
   vg_display_update(p->show, "read", 0, 0);
   VG_TRY(vg_problem_open(q, o->project, o->deck, err));
-  VG_TRY(vg_problem_refuse_section(q, err));
   VG_TRY(vg_cli_apply(&o->kept, &q->asked, err));
+  VG_TRY(vg_problem_refuse_section(q, err));
   st = vg_problem_read(q, NULL, p->show, err);
 done:
   return st;

@@ -480,8 +480,8 @@ static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                                   const struct vg_cad_options *o)
 {
   return (struct vg_cad_ask){
-    what,     kind, o->unit, o->patches, n, o->tolerance, o->chord, o->angle,
-    o->least, 0,    0,       o->solids,  0
+    what,     kind,     o->unit, o->patches, n,         o->tolerance, o->chord,
+    o->angle, o->least, 0,       0,          o->solids, o->is_section
   };
 }
 

@@ -78,6 +78,12 @@ struct vg_cad_options {
   double seconds;   /* time limit; 0: 360 and 60 per megabyte of the file */
   int keeps_solids; /* 1: solids that touch or overlap are triangulated one by
                        one, each with all its faces; 0: they are united */
+  /* 1: the curves of the file are a plane section: those of its faces, or those
+   * of no face. The result has no triangles, but points (x, y, 0), or (x, z, 0)
+   * of curves in a plane y = constant, and a segment for each wire from its
+   * first to its last point; these coincide if the wire is closed. Closed wires
+   * begin at their rearmost point. */
+  int is_section;
   /* Receives lines for a report: the unit, and the faces and edges that were
    * healed or dropped, with their locations. May be NULL. */
   void (*note)(void *user, const char *text);

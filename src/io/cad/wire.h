@@ -28,7 +28,8 @@ struct vg_cad_ask {
   int32_t leave_apart; /* how solids that touch are treated, see below */
   int32_t with_volume; /* 1: determine is_solid, volume and areas */
   int32_t solids;      /* enum vg_cad_solids */
-  int32_t reserved;    /* 0 */
+  int32_t section;     /* 1: READ answers with the curves of a section, see
+                          struct vg_cad_options */
 };
 
 /* Treatment of solids that touch or overlap. WHOLE: unite the complete solids;

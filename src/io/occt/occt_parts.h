@@ -82,6 +82,7 @@ struct Model {
                               adjacent */
   int n_solid = 0; /* solids of the file; joined solids keep the number of
                       the first of them, and the others have no faces */
+  std::vector<TopoDS_Edge> loose;  /* curves of no face, as read */
   std::vector<TopoDS_Edge> curves; /* [number - 1], set by triangulation */
   double diagonal = 0;             /* diagonal of the bounding box */
   double face_size = 0;   /* median diagonal of the faces' bounding boxes */
@@ -95,6 +96,11 @@ struct Model {
  * @param path  the file, also if it has no name of its own */
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk);
+
+/** The curves of the file as a plane section: points (x, y, 0) or (x, z, 0),
+ * and a segment for each wire, with its first and last point, which coincide if
+ * it is closed. */
+void section(const vg_cad_ask &ask, const Model &model, struct Surface &out);
 
 /** Number of faces of a shape; `most` if there are at least that many. */
 size_t count_faces(const TopoDS_Shape &shape, size_t most);

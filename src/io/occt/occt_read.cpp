@@ -282,7 +282,9 @@ public:
       from.number = static_cast<uint32_t>(seen_.Extent());
       from.shape = TopoDS::Face(s);
       model_.faces.push_back(from);
-    } else if (s.ShapeType() < TopAbs_FACE) {
+    } else if (s.ShapeType() == TopAbs_EDGE) {
+      model_.loose.push_back(TopoDS::Edge(s));
+    } else if (s.ShapeType() < TopAbs_EDGE) {
       for (TopoDS_Iterator i(s); i.More(); i.Next()) add(i.Value(), from);
     }
   }
@@ -596,6 +598,14 @@ void read(const vg_cad_ask &ask, const std::string &path, Model &model,
   if (ask.kind == 1) read_step(ask, path, model, talk);
   else if (ask.kind == 2) read_iges(ask, path, model, talk);
   else read_brep(ask, path, model, talk);
+  if (ask.section && !model.loose.empty()) return;
+  if (model.faces.empty() && !model.loose.empty())
+    throw Failure{ VG_ERR_INPUT,
+                   format("there are no faces in it, only %zu curves; if they "
+                          "are a plane section, for a mesh in two dimensions, "
+                          "give --cad-section yes, otherwise export solids or "
+                          "surfaces",
+                          model.loose.size()) };
   if (model.faces.empty())
     throw Failure{ VG_ERR_INPUT, "there are no faces in it, only points or "
                                  "curves, or nothing at all; export solids "

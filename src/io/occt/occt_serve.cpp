@@ -148,6 +148,12 @@ void answer_read(const vg_cad_ask &ask, Held &held, const Talk &talk)
   held = Held();
   talk.stage("reading the file");
   read(ask, file.path(), held.healed, talk);
+  if (ask.section) {
+    talk.stage("dividing its curves");
+    section(ask, held.healed, held.surface);
+    send(held.healed, held.surface, talk);
+    return;
+  }
   talk.stage("checking its faces for errors");
   complete(held.healed, talk);
   const Model whole = held.healed;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/mesh/format.h"
 #include "core/geometry/vector.h"
 #include "core/remesh/remesh.h"
 #include "io/stream/convention.h"
@@ -153,8 +154,11 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: all triangles lie in one plane: such a surface bounds no "
                  "volume. Give a body, or for a mesh in two dimensions "
-                 "the coordinates of the section in a .dat",
-                 b->read->files.stem);
+                 "%s",
+                 b->read->files.stem,
+                 vg_format_is_cad(b->read->files.surface)
+                   ? "the option --cad-section yes"
+                   : "the coordinates of the section in a .dat");
 }
 
 /* Whether the flow can be determined for a closed surface m if `kind` is

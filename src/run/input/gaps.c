@@ -113,6 +113,13 @@ static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
                  is_tri && s->max_cells ? "; or increase max_cells" : "");
 }
 
+/* The cells of a section are in the plane z = 0 of its strip. */
+static void flatten(struct vg_gaps *found)
+{
+  for (size_t i = 0; i < found->n; i++) found->x[i][2] = 0;
+  found->at[2] = 0;
+}
+
 vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err)
 {
@@ -128,13 +135,14 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
   o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_gaps_find(&b->surface, &o, &found, err));
   if (st == VG_BLOCKED) VG_TRY(too_many(b, &found, o.most_tri, err));
+  if (b->read->is_section) flatten(&found);
   if (found.n)
     vg_note(b->notes,
             "gap_edges %g: limits edge lengths at %zu places in gaps; the "
             "narrowest gap is %.4g wide, at (%.6g, %.6g, %.6g)%s",
             s->gap_edges, found.n, found.narrowest, found.at[0], found.at[1],
             found.at[2],
-            b->is_remeshed
+            b->is_remeshed || b->read->is_section
               ? ""
               : "; the surface is not remeshed, so cells between its coarse "
                 "faces cannot become small (remesh_surface yes remeshes it)");

@@ -365,7 +365,7 @@ static vg_status name_mapbc(struct vg_read *r, struct vg_error *err)
   return VG_OK;
 }
 
-static void note_cad(void *user, const char *text)
+void vg_read_note_cad(void *user, const char *text)
 {
   vg_note(user, "CAD: %s", text);
 }
@@ -383,7 +383,8 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   const char *path = r->files.surface;
   vg_status st = name_mapbc(r, err);
 
-  cad.note = note_cad;
+  if (st >= 0 && r->is_section) return vg_read_section(r, show, err);
+  cad.note = vg_read_note_cad;
   cad.stop = (struct vg_stop){ vg_display_stop, show };
   cad.user = r->notes;
   if (st < 0) return st;
@@ -595,7 +596,6 @@ static vg_status read_surface(struct vg_read *r, struct vg_display *show,
   const struct vg_project *project = *f->d3m ? &r->project : NULL;
   vg_status st;
 
-  if (r->is_section) return vg_read_section(r, err);
   if (!*f->front && *f->surface) return read_surface_file(r, show, err);
   r->side = VG_SIDE_DEFINED;
   st = *f->front ? vg_front_read(f->front, project, &r->surface, err)

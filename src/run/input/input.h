@@ -366,19 +366,24 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
 vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
                                         struct vg_error *err);
 
+/** 1 if the input is a plane section, by its name or the setting cad_section.
+ */
+int vg_problem_is_section(const struct vg_problem *p);
+
 /** Fills in settings of a plane section that were not given and differ from
  * those of a surface: cells and fan_angle. Does nothing for a surface. */
-void vg_section_complete(const struct vg_read *read, struct vg_settings *s);
+void vg_section_complete(struct vg_read *read, struct vg_settings *s);
 
 /** VG_ERR_UNSUPPORTED for a plane section, which only vanguard mesh and check
- * take. Called after vg_problem_open. */
+ * take. Called when the settings are complete. */
 vg_status vg_problem_refuse_section(const struct vg_problem *p,
                                     struct vg_error *err);
 
 /** Width of the cells of a mesh of a section: section_width or the largest
- * chord. slab: its surface (run/section/section_surface.h). */
-double vg_section_width(const struct vg_settings *s,
-                        const struct vg_mesh *slab);
+ * chord. slab: its surface (run/section/section_surface.h), of which the first
+ * patches are the elements. */
+double vg_section_width(const struct vg_settings *s, const struct vg_mesh *slab,
+                        size_t n_element);
 
 /** Writes all faces with a defect to a .vtu, with the kind as a cell field. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

@@ -64,6 +64,7 @@ static int is_tessellation(const struct vg_read *r)
 
 int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
 {
+  if (r->is_section) return 0;
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
   if (is_tessellation(r)) return sliver_share(surface) > MOST;

@@ -6,10 +6,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/mesh/format.h"
 #include "io/section/section.h"
 #include "layers/expand/join.h"
 #include "run/input/shape_parts.h"
+#include "run/input/sizes.h"
 #include "run/section/section_surface.h"
+#include "run/settings/patch_names.h"
 #include "run/settings/plan_options.h"
 
 #define FAN_ANGLE 60.0  /* S96: sharp and blunt trailing edges */
@@ -21,17 +24,31 @@
 
 enum { EDGES_MIN = 3 };
 
-void vg_section_complete(const struct vg_read *read, struct vg_settings *s)
+/* Whether the input is a plane section by its name or by the settings. */
+static int is_section(const struct vg_read *r, const struct vg_settings *s)
 {
+  return r->is_section ||
+         (s->cad_section && vg_format_is_cad(r->files.surface));
+}
+
+void vg_section_complete(struct vg_read *read, struct vg_settings *s)
+{
+  read->is_section = is_section(read, s);
   if (!read->is_section) return;
+  read->side = VG_SIDE_DEFINED;
   if (s->cells == VG_LAYER_TETS) s->cells = VG_LAYER_HEX;
   if (isnan(s->layer.fan_angle)) s->layer.fan_angle = FAN_ANGLE;
+}
+
+int vg_problem_is_section(const struct vg_problem *p)
+{
+  return is_section(&p->read, &p->asked);
 }
 
 vg_status vg_problem_refuse_section(const struct vg_problem *p,
                                     struct vg_error *err)
 {
-  if (!p->read.is_section) return VG_OK;
+  if (!vg_problem_is_section(p)) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "%s is a plane section, and this command works on surfaces in "
                  "space; vanguard mesh makes the mesh in two dimensions, and "
@@ -53,7 +70,6 @@ static vg_status refuse_settings(const struct vg_read *r, struct vg_error *err)
   else if (s->half != VG_HALF_AUTO && s->half != VG_HALF_NO)
     bad = "a half model is requested";
   else if (*s->baffles || *s->sheets) bad = "baffles or sheets are given";
-  else if (s->gap_edges > 0) bad = "gap_edges is given";
   else if (s->n_surface) bad = "the table surface is given";
   else if (r->metrics) bad = "the file of sizes has metrics";
   for (size_t i = 0; i < s->n_source && !bad; i++)
@@ -65,15 +81,77 @@ static vg_status refuse_settings(const struct vg_read *r, struct vg_error *err)
                  r->files.surface, bad);
 }
 
-vg_status vg_read_section(struct vg_read *r, struct vg_error *err)
+vg_status vg_boundary_refuse_plane_farfield(const struct vg_read *r,
+                                            struct vg_error *err)
+{
+  const int kind = r->settings.farfield.kind;
+
+  if (kind != VG_DOMAIN_C && kind != VG_DOMAIN_TUNNEL) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: farfield %s is made around plane sections (.dat) only; "
+                 "use sphere or box, or make the outer boundary part of the "
+                 "surface",
+                 r->files.stem, kind == VG_DOMAIN_C ? "c" : "tunnel");
+}
+
+/* The curves of a CAD model as the text of a section. */
+static vg_status write_curves(const struct vg_cad_surface *c, char **text,
+                              size_t *size, struct vg_error *err)
+{
+  FILE *to = open_memstream(text, size);
+  int bad = !to;
+
+  for (size_t i = 0; !bad && i < c->n_segment; i++) {
+    if (i) fprintf(to, "999 999\n");
+    for (uint32_t k = c->segment[i][0]; k <= c->segment[i][1]; k++)
+      fprintf(to, "%.17g %.17g\n", c->mesh.point[k][0], c->mesh.point[k][1]);
+    bad = ferror(to);
+  }
+  if (to) bad |= fclose(to) != 0;
+  return bad ? vg_fail_memory(err, "the curves of a section") : VG_OK;
+}
+
+static vg_status read_curves(struct vg_read *r, struct vg_display *show,
+                             struct vg_section *out, struct vg_error *err)
+{
+  struct vg_cad_options o = vg_options_cad(&r->settings, 0);
+  struct vg_cad_model model = VG_CAD_MODEL_INIT;
+  struct vg_read_info info = { .cad = &o, .model = &model };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_input in = VG_INPUT_INIT;
+  char *text = NULL, name[300];
+  size_t size = 0;
+  vg_status st;
+
+  o.note = vg_read_note_cad;
+  o.user = r->notes;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_mesh_read(r->files.surface, &m, &info, err));
+  if (info.unit) r->unit = info.unit;
+  VG_TRY(write_curves(&model.surface, &text, &size, err));
+  snprintf(name, sizeof name, "%.200s, points along its curves",
+           r->files.surface);
+  VG_TRY(vg_input_memory(name, text, size, &in, err));
+  st = vg_section_parse(&in, out, err);
+done:
+  free(text);
+  vg_input_release(&in);
+  vg_mesh_release(&m);
+  vg_cad_model_release(&model);
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
+}
+
+vg_status vg_read_section(struct vg_read *r, struct vg_display *show,
+                          struct vg_error *err)
 {
   struct vg_section s = VG_SECTION_INIT;
   vg_status st;
 
   VG_TRY(refuse_settings(r, err));
-  VG_TRY(vg_section_read(r->files.surface, &s, err));
+  VG_TRY(vg_section_is(r->files.surface)
+           ? vg_section_read(r->files.surface, &s, err)
+           : read_curves(r, show, &s, err));
   VG_TRY(vg_section_strip(&s, &r->surface, err));
-  r->side = VG_SIDE_DEFINED;
 done:
   vg_section_release(&s);
   return st;
@@ -185,6 +263,7 @@ static vg_status check_slot(const struct vg_boundary *b, struct vg_error *err)
 }
 
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
+                                     struct vg_display *show,
                                      struct vg_error *err)
 {
   struct vg_section_found *found = vg_alloc(b->surface.n_patch, sizeof *found);
@@ -213,7 +292,8 @@ vg_status vg_boundary_divide_section(struct vg_boundary *b,
   if (!found) return vg_fail_memory(err, "the edges of a section");
   b->flow.kind = VG_FLOW_EXTERNAL;
   b->flow.axis = -1;
-  st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
+  st = vg_boundary_gaps(b, show, err);
+  if (st >= 0) st = vg_section_divide(&b->surface, &sizes, &shares, found, err);
   if (st >= 0) note_found(b, found);
   if (st >= 0) st = check_found(b, found, err);
   if (st >= 0) st = check_slot(b, err);
@@ -228,7 +308,12 @@ static struct vg_section_outer outer_of(const struct vg_boundary *b,
 {
   const double size = f->size > 0 ? f->size
                                   : f->lengths * extent_of(&b->surface);
-  struct vg_section_outer o = { .is_box = f->kind == VG_FARFIELD_BOX,
+  const int kind = b->read->settings.farfield.kind;
+  struct vg_section_outer o = { .shape = kind == VG_DOMAIN_BOX ? VG_SECTION_BOX
+                                       : kind == VG_DOMAIN_C   ? VG_SECTION_C
+                                       : kind == VG_DOMAIN_TUNNEL
+                                         ? VG_SECTION_TUNNEL
+                                         : VG_SECTION_CIRCLE,
                                 .radius = size };
   double lo[3], hi[3];
 
@@ -238,6 +323,7 @@ static struct vg_section_outer outer_of(const struct vg_boundary *b,
     o.lo[k] = f->has_box ? f->lo[k] : o.centre[k] - size;
     o.hi[k] = f->has_box ? f->hi[k] : o.centre[k] + size;
   }
+  if (o.shape == VG_SECTION_C) o.lo[0] = o.centre[0];
   return o;
 }
 
@@ -250,12 +336,34 @@ static void reach_outer(struct vg_mesh *view,
   double *hi = view->point[view->n_point++];
 
   for (int k = 0; k < 2; k++) {
-    const double c = outer->centre[k], r = outer->radius;
-
-    lo[k] = outer->is_box ? outer->lo[k] : c - r;
-    hi[k] = outer->is_box ? outer->hi[k] : c + r;
+    lo[k] = outer->lo[k];
+    hi[k] = outer->hi[k];
   }
+  if (outer->shape == VG_SECTION_C) lo[0] = outer->centre[0] - outer->radius;
   lo[2] = hi[2] = 0;
+}
+
+/* Walls of a tunnel that grow no layers are inviscid. */
+static vg_status give_conditions(struct vg_boundary *b, struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  struct vg_mesh *m = &b->surface;
+  uint8_t *on = vg_calloc(m->n_patch, 1);
+  vg_status st;
+
+  if (!on) return vg_fail_memory(err, "the patches");
+  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, b->n_row + 2, on, err));
+  for (size_t i = b->n_row; i < b->n_row + 2; i++) {
+    struct vg_patch *p = &m->patch[i];
+
+    if (on[i] || vg_settings_layer_row(s, p->id).grow == VG_ANSWER_YES)
+      continue;
+    p->bc = p->family = 5;
+    p->bc_fun3d = 3000;
+  }
+done:
+  free(on);
+  return st;
 }
 
 struct edges {
@@ -293,6 +401,7 @@ vg_status vg_boundary_close_section(struct vg_boundary *b,
     vg_boundary_measure(b, &options, &b->read->settings, &view, &sizing, err));
   edges = (struct edges){ sizing, far.spacing > 0 ? far.spacing : INFINITY };
   VG_TRY(vg_section_close(&b->surface, &outer, &size, err));
+  if (outer.shape == VG_SECTION_TUNNEL) VG_TRY(give_conditions(b, err));
   b->domain.added_farfield = 1;
   b->domain.symmetry_axis = -1;
   b->domain.n_added_tri = b->surface.n_tri - n_tri;
@@ -304,14 +413,15 @@ done:
   return st;
 }
 
-double vg_section_width(const struct vg_settings *s, const struct vg_mesh *slab)
+double vg_section_width(const struct vg_settings *s, const struct vg_mesh *slab,
+                        size_t n_element)
 {
   const size_t n = vg_section_points(slab);
   double most = 0;
   size_t t = 0;
 
   if (s->section_width > 0) return s->section_width;
-  for (size_t patch = 0; patch + 3 < slab->n_patch; patch++) {
+  for (size_t patch = 0; patch < n_element; patch++) {
     double lo = INFINITY, hi = -INFINITY;
 
     for (; t < slab->n_tri && slab->tri_patch[t] == patch; t++)

@@ -21,10 +21,19 @@ int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 /* run/input/section_boundary.c ------------------------------------------- */
 
 /** Reads the strip of a plane section, with the conditions of its patches. */
-vg_status vg_read_section(struct vg_read *r, struct vg_error *err);
+vg_status vg_read_section(struct vg_read *r, struct vg_display *show,
+                          struct vg_error *err);
+
+/** Adds a line of the CAD reader to the notes, `user`. */
+void vg_read_note_cad(void *user, const char *text);
+
+/** VG_ERR_INPUT if the settings request a farfield that only sections have. */
+vg_status vg_boundary_refuse_plane_farfield(const struct vg_read *r,
+                                            struct vg_error *err);
 
 /** Divides the walls of a section into the requested edges. */
 vg_status vg_boundary_divide_section(struct vg_boundary *b,
+                                     struct vg_display *show,
                                      struct vg_error *err);
 
 /** Adds the farfield and the planes to the walls. */

@@ -596,10 +596,11 @@ vg_status vg_boundary_shape(struct vg_read *read,
   VG_TRY(refuse_periodic(b, err));
   if (read->is_section) {
     b->is_remeshed = 0;
-    VG_TRY(vg_boundary_divide_section(b, err));
+    VG_TRY(vg_boundary_divide_section(b, show, err));
     st = take_rows(b, 0, NULL, err);
     goto done;
   }
+  VG_TRY(vg_boundary_refuse_plane_farfield(read, err));
   if (vg_boundary_wants_inner(b)) {
     VG_TRY(split_quads(&b->surface, b->notes, err));
     VG_TRY(vg_boundary_take_inner(b, &read->settings, err));

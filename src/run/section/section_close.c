@@ -15,25 +15,44 @@
 #define REACH 0.9 /* S98 */
 
 enum {
-  SIDE_MIN = 4
-}; /* Least number of edges on a quarter of a circle or a
-      side of a box. */
+  SIDE_MIN = 4, /* Least number of edges on a quarter of a circle or a side of
+                   a box. */
+  SIDES = 5
+};
 
-/* A part of the outer boundary: a quarter of the circle or a side of the box,
- * counter-clockwise. */
+/* A part of the outer boundary: a quarter of a circle or a side of a box. */
 struct side {
   const struct vg_section_outer *outer;
   const struct vg_size_function *size;
-  int k;
+  int is_arc, k;
   double length;
 };
+
+/* Side i of the boundary, counter-clockwise. The left side of a C is an arc of
+ * two quarters. */
+static struct side side_of(const struct vg_section_outer *o,
+                           const struct vg_size_function *size, int i)
+{
+  struct side s = { .outer = o, .size = size, .k = i };
+
+  s.is_arc = o->shape == VG_SECTION_CIRCLE ||
+             (o->shape == VG_SECTION_C && i > 2);
+  if (o->shape == VG_SECTION_C && i > 2) s.k = i - 2;
+  s.length = s.is_arc ? QUARTER * o->radius : o->hi[i & 1] - o->lo[i & 1];
+  return s;
+}
+
+static int n_side(const struct vg_section_outer *o)
+{
+  return o->shape == VG_SECTION_C ? 5 : 4;
+}
 
 static void at_side(const struct side *o, double u, double x[2])
 {
   const struct vg_section_outer *b = o->outer;
   double sine, cosine;
 
-  if (b->is_box) {
+  if (!o->is_arc) {
     const double *corner[2][2] = { { &b->lo[0], &b->hi[0] },
                                    { &b->lo[1], &b->hi[1] } };
     const int moves = o->k & 1, from = o->k >> 1; /* Axis, and its end. */
@@ -64,22 +83,18 @@ static double size_on_side(void *user, double s)
   return o->size->at(o->size->user, x);
 }
 
-static double length_of(const struct vg_section_outer *o, int k)
-{
-  return o->is_box ? o->hi[k & 1] - o->lo[k & 1] : QUARTER * o->radius;
-}
-
-/* Points of the outer boundary, counter-clockwise. */
+/* Points of the outer boundary, counter-clockwise; end[i]: after side i. */
 static vg_status make_outer(const struct vg_section_outer *outer,
                             const struct vg_size_function *size, size_t *n,
-                            double (**x)[2], struct vg_error *err)
+                            double (**x)[2], size_t end[SIDES],
+                            struct vg_error *err)
 {
   size_t cap = 0, n_step;
   double *step;
   vg_status st;
 
-  for (int k = 0; k < 4; k++) {
-    struct side o = { outer, size, k, length_of(outer, k) };
+  for (int k = 0; k < n_side(outer); k++) {
+    struct side o = side_of(outer, size, k);
 
     st = vg_graded_steps(o.length, size_on_side, &o, SIDE_MIN, &n_step, &step,
                          err);
@@ -93,14 +108,36 @@ static vg_status make_outer(const struct vg_section_outer *outer,
     for (size_t i = 0; i < n_step; i++)
       at_side(&o, step[i] / o.length, (*x)[(*n)++]);
     free(step);
+    end[k] = *n;
   }
   return VG_OK;
+}
+
+/* Whether x is inside; a circle has a margin. */
+static int is_inside(const struct vg_section_outer *o, const double x[2])
+{
+  const double d[2] = { x[0] - o->centre[0], x[1] - o->centre[1] };
+  const double r = REACH * o->radius;
+  int in_box = 1;
+
+  for (int k = 0; k < 2; k++) in_box &= x[k] > o->lo[k] && x[k] < o->hi[k];
+  switch (o->shape) {
+  case VG_SECTION_BOX:
+  case VG_SECTION_TUNNEL: return in_box;
+  case VG_SECTION_C:
+    if (d[0] > 0) return d[0] < r && fabs(d[1]) < r;
+    break;
+  case VG_SECTION_CIRCLE: break;
+  }
+  return d[0] * d[0] + d[1] * d[1] <= r * r;
 }
 
 static vg_status check_reach(const struct vg_mesh *strip,
                              const struct vg_section_outer *o,
                              struct vg_error *err)
 {
+  const int is_round = o->shape == VG_SECTION_CIRCLE ||
+                       o->shape == VG_SECTION_C;
   double lo[3], hi[3], radius = 0;
   int bad = 0;
 
@@ -110,17 +147,16 @@ static vg_status check_reach(const struct vg_mesh *strip,
     const double d[2] = { p[0] - o->centre[0], p[1] - o->centre[1] };
 
     radius = fmax(radius, sqrt(d[0] * d[0] + d[1] * d[1]));
-    for (int k = 0; k < 2 && o->is_box; k++)
-      bad |= p[k] <= o->lo[k] || p[k] >= o->hi[k];
+    bad |= !is_inside(o, p);
   }
-  if (o->is_box ? !bad : radius <= REACH * o->radius) return VG_OK;
-  if (o->is_box)
+  if (!bad) return VG_OK;
+  if (!is_round)
     return vg_fail(err, VG_ERR_INPUT,
-                   "the farfield box from (%g, %g) to (%g, %g) does not "
+                   "the farfield %s from (%g, %g) to (%g, %g) does not "
                    "contain the section, which reaches from (%g, %g) to (%g, "
                    "%g); make it larger",
-                   o->lo[0], o->lo[1], o->hi[0], o->hi[1], lo[0], lo[1], hi[0],
-                   hi[1]);
+                   o->shape == VG_SECTION_BOX ? "box" : "tunnel", o->lo[0],
+                   o->lo[1], o->hi[0], o->hi[1], lo[0], lo[1], hi[0], hi[1]);
   return vg_fail(err, VG_ERR_INPUT,
                  "the farfield of radius %g around (%g, %g) does not contain "
                  "the section with a margin of a tenth; it needs a radius of "
@@ -225,21 +261,67 @@ static vg_status mirror(struct vg_mesh *m, size_t n_strip, size_t first,
   return VG_OK;
 }
 
+/* end, patch: of the sides. */
 static void put_outer(struct vg_mesh *m, size_t n_wall, size_t n_outer,
-                      uint32_t patch)
+                      const size_t end[SIDES], const uint32_t patch[SIDES])
 {
   const uint32_t half = (uint32_t)(n_wall + n_outer);
 
-  for (uint32_t i = 0; i < n_outer; i++) {
+  for (uint32_t i = 0, side = 0; i < n_outer; i++) {
     const uint32_t a = (uint32_t)n_wall + i;
     const uint32_t b = (uint32_t)n_wall + (i + 1 < n_outer ? i + 1 : 0);
     const uint32_t tri[2][3] = { { b, a, half + a },
                                  { b, half + a, half + b } };
 
+    while (i >= end[side]) side++;
     memcpy(m->tri + m->n_tri, tri, sizeof tri);
-    m->tri_patch[m->n_tri++] = patch;
-    m->tri_patch[m->n_tri++] = patch;
+    m->tri_patch[m->n_tri++] = patch[side];
+    m->tri_patch[m->n_tri++] = patch[side];
   }
+}
+
+/* The patches of the sides, then the planes. */
+static vg_status add_patches(const struct vg_mesh *strip,
+                             const struct vg_section_outer *outer,
+                             struct vg_mesh *m, uint32_t side[SIDES],
+                             uint32_t plane[2], struct vg_error *err)
+{
+  static const struct added {
+    const char *name;
+    int32_t bc, fun3d;
+    int side;
+  } tunnel[] = { { "lower", VG_BC_NONE, VG_BC_NONE, 0 },
+                 { "upper", VG_BC_NONE, VG_BC_NONE, 2 },
+                 { "inlet", 3, 5000, 3 },
+                 { "outlet", 3, 5000, 1 } },
+    farfield = { "farfield", 3, 5000, 0 },
+    planes[] = { { "back", 1, 6663, 0 }, { "front", 1, 6663, 1 } };
+  const int is_tunnel = outer->shape == VG_SECTION_TUNNEL;
+  const struct added *list = is_tunnel ? tunnel : &farfield;
+  size_t at;
+
+  m->patch = vg_alloc(strip->n_patch, sizeof *m->patch);
+  if (!m->patch) return vg_fail_memory(err, "the patches");
+  m->n_patch = strip->n_patch;
+  memcpy(m->patch, strip->patch, m->n_patch * sizeof *m->patch);
+  for (int i = 0; i < (is_tunnel ? 4 : 1); i++) {
+    for (size_t k = 0; k < strip->n_patch; k++)
+      if (!strcmp(strip->patch[k].name, list[i].name))
+        return vg_fail(err, VG_ERR_INPUT,
+                       "an element of the section has the name %s, which a "
+                       "side of the farfield has; rename the element",
+                       list[i].name);
+    at = add_patch(m, list[i].name, list[i].bc, list[i].fun3d);
+    if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
+    if (is_tunnel) side[list[i].side] = (uint32_t)at;
+    for (int k = 0; k < SIDES && !is_tunnel; k++) side[k] = (uint32_t)at;
+  }
+  for (int i = 0; i < 2; i++) {
+    at = add_patch(m, planes[i].name, planes[i].bc, planes[i].fun3d);
+    if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
+    plane[i] = (uint32_t)at;
+  }
+  return VG_OK;
 }
 
 /* The planes z = 0 and z = width of walls and farfield. */
@@ -265,28 +347,16 @@ vg_status vg_section_close(struct vg_mesh *strip,
 {
   struct vg_mesh m = VG_MESH_INIT;
   double(*x)[2] = NULL;
-  size_t n = 0, far, back, front;
+  size_t n = 0, end[SIDES];
+  uint32_t side[SIDES], plane[2];
   vg_status st;
 
   VG_TRY(check_reach(strip, outer, err));
-  VG_TRY(make_outer(outer, size, &n, &x, err));
+  VG_TRY(make_outer(outer, size, &n, &x, end, err));
   VG_TRY(place_points(strip, n, (const double(*)[2])x, &m, err));
-  m.patch = vg_alloc(strip->n_patch, sizeof *m.patch);
-  if (!m.patch) {
-    st = vg_fail_memory(err, "the patches");
-    goto done;
-  }
-  m.n_patch = strip->n_patch;
-  memcpy(m.patch, strip->patch, m.n_patch * sizeof *m.patch);
-  far = add_patch(&m, "farfield", 3, 5000);
-  back = add_patch(&m, "back", 1, 6663);
-  front = add_patch(&m, "front", 1, 6663);
-  if (far == SIZE_MAX || back == SIZE_MAX || front == SIZE_MAX) {
-    st = vg_fail_memory(err, "the patches");
-    goto done;
-  }
-  put_outer(&m, strip->n_point / 2, n, (uint32_t)far);
-  VG_TRY(put_planes(&m, size, back, front, err));
+  VG_TRY(add_patches(strip, outer, &m, side, plane, err));
+  put_outer(&m, strip->n_point / 2, n, end, side);
+  VG_TRY(put_planes(&m, size, plane[0], plane[1], err));
   vg_mesh_move(strip, &m);
 done:
   free(x);

@@ -174,26 +174,129 @@ done:
 
 /* --- boundary ------------------------------------------------------------ */
 
+/* An edge of the boundary with the fluid on the right of i -> j. */
+static vg_status add_edge(struct build *b, uint32_t i, uint32_t j,
+                          uint32_t patch)
+{
+  struct vg_plane_mesh *m = b->m;
+
+  if (vg_reserve(&m->edge, &b->cap_edge, m->n_edge + 1, sizeof *m->edge) ||
+      vg_reserve(&m->edge_patch, &b->cap_edge_patch, m->n_edge + 1,
+                 sizeof *m->edge_patch))
+    return no_memory(b);
+  m->edge[m->n_edge][0] = j;
+  m->edge[m->n_edge][1] = i;
+  m->edge_patch[m->n_edge++] = patch;
+  return VG_OK;
+}
+
+/* 1 for the patches other than the planes in which columns slide: those of a
+ * tunnel at both ends of walls with layers. */
+static vg_status find_slides(const struct build *b, uint8_t **slides)
+{
+  *slides = vg_calloc(b->slab->n_patch, 1);
+  if (!*slides) return vg_fail_memory(b->err, "the patches");
+  for (size_t i = 0; b->c && i < b->c->n_border; i++)
+    (*slides)[b->c->border_patch[i]] = b->c->border_patch[i] < b->back;
+  return VG_OK;
+}
+
+/* The sides of the columns in the plane, on the patches in which they slide. */
+static vg_status put_sides(struct build *b, const uint8_t *slides)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < b->c->n_border; i++)
+    for (int k = 0; k < 2 && slides[b->c->border_patch[i]]; k++) {
+      const uint32_t c = b->c->border[i][k];
+      const uint32_t n = b->base[c] == VG_NO_INDEX ? 0 : b->c->column[c].n;
+
+      for (uint32_t l = 0; l < n && st >= 0; l++)
+        st = add_edge(b, level(b, c, l + (uint32_t)k),
+                      level(b, c, l + 1 - (uint32_t)k), b->c->border_patch[i]);
+    }
+  return st;
+}
+
+/* The edges of these patches above the columns. */
+static vg_status put_above(struct build *b, const uint8_t *slides)
+{
+  const struct vg_front *f = b->front;
+  vg_status st;
+
+  for (size_t t = 0; t < f->n_face; t++)
+    for (int k = 0; k < 3 && slides[f->patch[t]]; k++) {
+      const uint32_t i = f->face[t][k], j = f->face[t][(k + 1) % 3];
+      uint32_t v[2];
+
+      if (f->x[i][2] != 0 || f->x[j][2] != 0) continue;
+      VG_TRY(number_point(b, i, &v[0]));
+      VG_TRY(number_point(b, j, &v[1]));
+      VG_TRY(add_edge(b, v[0], v[1], f->patch[t]));
+    }
+  st = VG_OK;
+done:
+  return st;
+}
+
 static vg_status put_boundary(struct build *b)
 {
   const struct vg_mesh *s = b->slab;
-  struct vg_plane_mesh *m = b->m;
+  uint8_t *slides;
+  vg_status st = find_slides(b, &slides);
 
-  for (size_t t = 0; t < s->n_tri; t++)
-    for (int k = 0; k < 3; k++) {
+  for (size_t t = 0; t < s->n_tri && st >= 0; t++)
+    for (int k = 0; k < 3 && !slides[s->tri_patch[t]] && st >= 0; k++) {
       const uint32_t i = s->tri[t][k], j = s->tri[t][(k + 1) % 3];
 
       if (i >= b->n_strip || j >= b->n_strip || s->tri_patch[t] == b->back)
         continue;
-      if (vg_reserve(&m->edge, &b->cap_edge, m->n_edge + 1, sizeof *m->edge) ||
-          vg_reserve(&m->edge_patch, &b->cap_edge_patch, m->n_edge + 1,
-                     sizeof *m->edge_patch))
-        return no_memory(b);
-      m->edge[m->n_edge][0] = j;
-      m->edge[m->n_edge][1] = i;
-      m->edge_patch[m->n_edge++] = s->tri_patch[t];
+      st = add_edge(b, i, j, s->tri_patch[t]);
     }
+  if (st >= 0 && b->c) st = put_sides(b, slides);
+  if (st >= 0 && b->c) st = put_above(b, slides);
+  free(slides);
+  return st;
+}
+
+/* The points at the tops of the columns; to: numbers of points. */
+static vg_status put_tops(struct build *b, const uint32_t *to, uint32_t **top)
+{
+  *top = vg_alloc(b->c->n_column, sizeof **top);
+  if (!*top) return no_memory(b);
+  for (uint32_t i = 0; i < b->c->n_column; i++)
+    (*top)[i] = b->base[i] == VG_NO_INDEX ? VG_NO_INDEX
+                                          : to[level(b, i, b->c->column[i].n)];
   return VG_OK;
+}
+
+/* Removes the points of patches in which columns slide that have no edge left.
+ */
+static vg_status drop_unused(struct build *b, uint32_t **top)
+{
+  struct vg_plane_mesh *m = b->m;
+  uint32_t *to = vg_alloc(m->n_point, sizeof *to), n = 0;
+  vg_status st;
+
+  if (!to) return no_memory(b);
+  memset(to, 0xff, m->n_point * sizeof *to);
+  for (size_t i = 0; i < 3 * m->n_tri; i++) to[m->tri[i / 3][i % 3]] = 0;
+  for (size_t i = 0; i < 4 * m->n_quad; i++) to[m->quad[i / 4][i % 4]] = 0;
+  for (size_t i = 0; i < m->n_point; i++) {
+    if (to[i] == VG_NO_INDEX) continue;
+    memmove(m->x[n], m->x[i], sizeof *m->x);
+    to[i] = n++;
+  }
+  m->n_point = n;
+  for (size_t i = 0; i < 3 * m->n_tri; i++)
+    m->tri[i / 3][i % 3] = to[m->tri[i / 3][i % 3]];
+  for (size_t i = 0; i < 4 * m->n_quad; i++)
+    m->quad[i / 4][i % 4] = to[m->quad[i / 4][i % 4]];
+  for (size_t i = 0; i < 2 * m->n_edge; i++)
+    m->edge[i / 2][i % 2] = to[m->edge[i / 2][i % 2]];
+  st = b->c ? put_tops(b, to, top) : VG_OK;
+  free(to);
+  return st;
 }
 
 /* The planes are the last two patches. */
@@ -211,7 +314,8 @@ static vg_status put_patches(struct build *b)
 
 vg_status vg_section_mesh(const struct vg_mesh *slab,
                           const struct vg_layers *layers,
-                          struct vg_plane_mesh *out, struct vg_error *err)
+                          struct vg_plane_mesh *out, uint32_t **top,
+                          struct vg_error *err)
 {
   struct vg_plane_mesh m = VG_PLANE_MESH_INIT;
   struct build b = { .slab = slab,
@@ -229,6 +333,7 @@ vg_status vg_section_mesh(const struct vg_mesh *slab,
   VG_TRY(put_field(&b));
   VG_TRY(put_boundary(&b));
   VG_TRY(put_patches(&b));
+  VG_TRY(drop_unused(&b, top));
   *out = m;
   m = (struct vg_plane_mesh)VG_PLANE_MESH_INIT;
 done:
@@ -245,7 +350,8 @@ void vg_section_mesh_release(struct vg_section_mesh *m)
   vg_plane_mesh_release(&m->plane);
   vg_mesh_release(&m->solid);
   free(m->id);
-  m->id = NULL;
+  free(m->top);
+  m->id = m->top = NULL;
 }
 
 static int by_key(const void *a, const void *b)
@@ -291,7 +397,7 @@ vg_status vg_section_mesh_new(const struct vg_mesh *slab,
   struct vg_patch plane[2];
   vg_status st;
 
-  VG_TRY(vg_section_mesh(slab, layers, &m.plane, err));
+  VG_TRY(vg_section_mesh(slab, layers, &m.plane, &m.top, err));
   memcpy(plane, slab->patch + slab->n_patch - 2, sizeof plane);
   plane[0].bc_fun3d = plane[1].bc_fun3d = SYMMETRY_X + axis;
   VG_TRY(vg_plane_mesh_extrude(&m.plane, axis, width, plane, &m.solid, err));

@@ -56,18 +56,27 @@ vg_status vg_section_divide(struct vg_mesh *strip,
                             struct vg_section_found *found,
                             struct vg_error *err);
 
+enum vg_section_shape {
+  VG_SECTION_CIRCLE,
+  VG_SECTION_BOX,
+  VG_SECTION_C,     /* Half circle upstream, straight downstream. */
+  VG_SECTION_TUNNEL /* Box with walls below and above. */
+};
+
 /** A closed boundary around the section. */
 struct vg_section_outer {
-  int is_box;
-  double centre[2], radius; /* Circle. */
-  double lo[2], hi[2];      /* Box. */
+  enum vg_section_shape shape;
+  double centre[2], radius; /* Circle and C. */
+  double lo[2], hi[2];      /* Box and tunnel; C: hi[0] is its end. */
 };
 
 /** Completes a strip to a slab by a farfield and the two planes, which are
- * triangulated.
+ * triangulated. Patches are added: farfield, or lower, upper, inlet and outlet
+ * of a tunnel; then the planes.
  *
  * @param size  edge lengths on the farfield and in the planes
- * VG_ERR_INPUT: the boundary does not contain the section. VG_ERR_GEOMETRY,
+ * VG_ERR_INPUT: the boundary does not contain the section; an element has the
+ * name of a patch of the tunnel. VG_ERR_GEOMETRY,
  * VG_ERR_STOPPED, VG_ERR_MEMORY. On failure the strip is unchanged. */
 vg_status vg_section_close(struct vg_mesh *strip,
                            const struct vg_section_outer *outer,

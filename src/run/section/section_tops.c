@@ -46,29 +46,6 @@ static void add_sides(const struct vg_plane_mesh *m, const uint32_t *v, int n,
     side[(*n_side)++] = (struct side){ key_of(v[k], v[(k + 1) % n]), area };
 }
 
-/* Points of the plane mesh at the tops of its columns: they follow the strip in
- * the order of the columns. */
-static vg_status number_tops(const struct vg_mesh *slab,
-                             const struct vg_columns *c, uint32_t **top,
-                             struct vg_error *err)
-{
-  const uint32_t back = (uint32_t)slab->n_patch - 2;
-  uint32_t at = (uint32_t)vg_section_points(slab);
-
-  *top = vg_alloc(c->n_column, sizeof **top);
-  if (!*top) return vg_fail_memory(err, "the tops of the layers");
-  memset(*top, 0xff, c->n_column * sizeof **top);
-  for (size_t i = 0; i < c->n_border; i++)
-    for (int k = 0; k < 2 && c->border_patch[i] == back; k++)
-      (*top)[c->border[i][k]] = 0;
-  for (size_t i = 0; i < c->n_column; i++) {
-    if ((*top)[i] == VG_NO_INDEX) continue;
-    at += c->column[i].n;
-    (*top)[i] = c->column[i].n ? at - 1 : c->column[i].root;
-  }
-  return VG_OK;
-}
-
 /* Ratio across the edge with this key, which has a layer cell and a cell of the
  * field. */
 static double ratio_at(const struct side *side, size_t n, uint64_t key)
@@ -87,15 +64,14 @@ static double ratio_at(const struct side *side, size_t n, uint64_t key)
 
 vg_status vg_section_tops(const struct vg_mesh *slab,
                           const struct vg_layers *layers,
-                          const struct vg_plane_mesh *m, double **ratio,
-                          struct vg_error *err)
+                          const struct vg_plane_mesh *m, const uint32_t *top,
+                          double **ratio, struct vg_error *err)
 {
   const struct vg_columns *c = &layers->columns;
   const uint32_t back = (uint32_t)slab->n_patch - 2;
   struct side *side = vg_alloc(3 * m->n_tri + 4 * m->n_quad, sizeof *side);
   double *of_edge = vg_calloc(vg_section_points(slab), sizeof *of_edge);
   double *out = vg_calloc(c->n_face, sizeof *out);
-  uint32_t *top = NULL;
   size_t n = 0;
   vg_status st = VG_OK;
 
@@ -103,7 +79,6 @@ vg_status vg_section_tops(const struct vg_mesh *slab,
     st = vg_fail_memory(err, "the tops of the layers");
     goto done;
   }
-  VG_TRY(number_tops(slab, c, &top, err));
   for (size_t i = 0; i < m->n_tri; i++) add_sides(m, m->tri[i], 3, side, &n);
   for (size_t i = 0; i < m->n_quad; i++) add_sides(m, m->quad[i], 4, side, &n);
   if (n) qsort(side, n, sizeof *side, by_key);
@@ -122,7 +97,6 @@ vg_status vg_section_tops(const struct vg_mesh *slab,
 done:
   free(side);
   free(of_edge);
-  free(top);
   free(out);
   return st;
 }

@@ -80,7 +80,7 @@ static const struct {
   { "farfield", "xhi", GIVEN, NEEDS, "yhi", GIVEN },
   { "farfield", "yhi", GIVEN, NEEDS, "zhi", GIVEN },
   { "farfield", "zhi", GIVEN, NEEDS, "xlo", GIVEN },
-  { "farfield", "xlo", GIVEN, NEEDS, "kind", "{'const':'box'}" },
+  { "farfield", "xlo", GIVEN, NEEDS, "kind", "{'enum':['box','tunnel']}" },
   { "farfield", "kind", MACH, NEEDS, "mach", GIVEN },
   { "farfield", "mach", GIVEN, NEEDS, "kind", MACH },
   { "farfield", "upstream", GIVEN, NEEDS, "kind", MACH },
@@ -115,7 +115,8 @@ static const struct {
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'internal'}}},"
         "'farfield':{'required':['kind'],"
-        "'properties':{'kind':{'enum':['sphere','box','mach']}}}}}}" },
+        "'properties':{'kind':{'enum':['sphere','box','mach',"
+        "'c','tunnel']}}}}}}" },
   { "", "{'not':{'required':['settings','farfield'],'properties':{"
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'external'}}},"

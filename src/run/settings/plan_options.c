@@ -48,6 +48,7 @@ struct vg_cad_options vg_options_cad(const struct vg_settings *s,
     struct vg_cad_options){ .unit = s->cad.unit,
                             .solids = s->cad.solids,
                             .patches = s->cad.patches,
+                            .is_section = s->cad_section,
                             .tolerance = s->cad.tolerance,
                             .chord = fmin(chord, CHORD_MOST),
                             .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
@@ -79,9 +80,11 @@ struct vg_flow_options vg_options_flow(const struct vg_settings *s,
     o.asked_by = "farfield none";
   } else if (s->farfield.kind != VG_DOMAIN_AUTO) {
     o.kind = VG_FLOW_EXTERNAL;
-    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX  ? "farfield box"
-               : s->farfield.kind == VG_DOMAIN_MACH ? "farfield mach"
-                                                    : "farfield sphere";
+    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX    ? "farfield box"
+               : s->farfield.kind == VG_DOMAIN_MACH   ? "farfield mach"
+               : s->farfield.kind == VG_DOMAIN_C      ? "farfield c"
+               : s->farfield.kind == VG_DOMAIN_TUNNEL ? "farfield tunnel"
+                                                      : "farfield sphere";
   } else if (has_cells) {
     o.kind = VG_FLOW_INTERNAL;
     o.asked_by = "flow internal (implied by a volume mesh as input)";

@@ -210,6 +210,10 @@ VG_ROW(WORD, plain, section_axis, "section_axis", 0,
   .help = "Axis normal to a mesh in two dimensions where it is written one "
   "cell thick. z: the coordinates of the section are x and y; y: they are x "
   "and z, as FUN3D requires")
+VG_ROW(FLAG, plain, cad_section, "cad_section", 0,
+  .use = VG_USE_CAD, .unit = "", .help = "The curves of a CAD file are a plane "
+  "section, for a mesh in two dimensions: its wires, or the edges of its plane "
+  "faces")
 VG_ROW(REAL, plain, gap_edges, "gap_edges", 0,
   .topic = VG_TOPIC_REMESH,
   .hi = 1000, .unit = "edges", .help = "Minimum number of edges across the "

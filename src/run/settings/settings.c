@@ -26,8 +26,8 @@
 #define MACH_MAX 100   /* beyond all flows of continua */
 #define HUGE_SIZE 1e60 /* its cube is finite */
 
-static const char *const domain_words[] = { "auto", "none", "sphere",
-                                            "box",  "mach", NULL };
+static const char *const domain_words[] = { "auto", "none", "sphere", "box",
+                                            "mach", "c",    "tunnel", NULL };
 /* In the order of enum vg_flow_kind, enum vg_flow_half. */
 static const char *const flow_words[] = { "auto", "external", "internal",
                                           NULL };
@@ -117,10 +117,13 @@ static const struct vg_param farfield_columns[] = {
     .type = VG_PARAM_WORD, .words = domain_words, .unit = "", .required = 1,
     .help = "Shape of the generated outer boundary: auto (a sphere, only "
             "if the surface has no outer boundary), none, sphere, box, or mach "
-            "(swept along the Mach cone, for sonic booms)" },
+            "(swept along the Mach cone, for sonic booms). Of plane sections "
+            "also c (half circle upstream, straight downstream) and tunnel (a "
+            "box with walls below and above)" },
   { "lengths", AT(lengths), .type = VG_PARAM_REAL, .hi = HUGE_SIZE,
     .above_lo = 1, .unit = "body lengths",
-    .help = "Radius of the farfield sphere, or half width of the box" },
+    .help = "Radius of the farfield sphere, or half width of the box or "
+            "tunnel" },
   { "size", AT(size), .type = VG_PARAM_REAL, LENGTH,
     .help = "Radius or half width of the farfield as an absolute length; "
             "0: in body lengths" },

@@ -27,7 +27,9 @@ enum vg_domain_choice {
   VG_DOMAIN_NONE,
   VG_DOMAIN_SPHERE,
   VG_DOMAIN_BOX,
-  VG_DOMAIN_MACH
+  VG_DOMAIN_MACH,
+  VG_DOMAIN_C,     /* of plane sections only */
+  VG_DOMAIN_TUNNEL /* of plane sections only */
 };
 
 /** The farfield table has one row. NAN: not given. */

@@ -250,10 +250,10 @@ static vg_status check(const struct vg_settings *s, struct vg_error *err)
                      "farfield: in %c the lower corner must be "
                      "below the upper corner",
                      "xyz"[k]);
-  if (lo && f->kind != VG_DOMAIN_BOX)
+  if (lo && f->kind != VG_DOMAIN_BOX && f->kind != VG_DOMAIN_TUNNEL)
     return vg_fail(err, VG_ERR_INPUT,
                    "farfield: corners are given, but kind "
-                   "is %s; set kind to box",
+                   "is %s; set kind to box or tunnel",
                    kind_name(f));
   if (check_mach(f, err) < 0) return VG_ERR_INPUT;
   if (check_sources(s, err) < 0) return VG_ERR_INPUT;

@@ -43,7 +43,7 @@ static vg_status finish_section(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_mesh *slab = &p->boundary.surface;
   vg_status st = vg_section_tops(slab, &layers->layers, &r->section.plane,
-                                 &layers->top, err);
+                                 r->section.top, &layers->top, err);
 
   if (st >= 0 && !r->rank) st = vg_layer_stage_finish(layers, slab, err);
   return vg_comm_agree(r->comm, st, err);
@@ -83,7 +83,7 @@ vg_status vg_run_section(struct vg_run *r, const struct vg_problem *p,
     st = grow_section(r, p, layers, team, show, &sizing, err);
   VG_TRY(vg_run_share_with_node(r, st, grown, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, slab, grown, sizing, r->options.change, err));
-  width = vg_section_width(s, slab);
+  width = vg_section_width(s, slab, p->boundary.n_row);
   st = vg_section_mesh_new(slab, grown, s->section_axis ? 1 : 2, width,
                            &r->section, err);
   if (st >= 0) st = check_cells(s, &r->section.plane, err);

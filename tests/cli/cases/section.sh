@@ -37,7 +37,12 @@ exits 0
 says out "validity: valid"
 vanguard check -q d/aerofoil.dat --deck d/aerofoil.deck
 exits 0
-says out "vanguard mesh accepts this surface"
+grep -qE "^ +126 .* NACA_0012$" out || fail "no edges of the element"
+says out "vanguard mesh accepts this section"
+grep -qE "needle|narrow strip|triangles" out && fail "check describes the strip"
+vanguard check -q d/aerofoil.dat --deck d/aerofoil.deck --json
+exits 0
+grep -q needles out && fail "check describes the strip"
 
 # Cells across a blunt trailing edge; the plane of FUN3D.
 vanguard demo aerofoil-blunt --out d
@@ -99,6 +104,54 @@ vanguard mesh -q -p two.dat --out g --write su2
 exits 0
 says g/two.su2 "MARKER_TAG= flap"
 says out "quadrilaterals                         0"
+
+# A C, half a circle upstream and straight sides downstream.
+vanguard mesh -q -p d/aerofoil --farfield c --farfield-size 5 --out c \
+  --write su2,b8.ugrid --min-full 100
+exits 0
+vanguard check -q c/aerofoil.b8.ugrid
+exits 0
+says out "validity: valid"
+awk '/^NPOIN/ { n = $2; next } n > 0 { n--; x = $1 - 0.5
+       if (x > 4.999999) right = 1
+       if (x < -4.99999) left = 1
+       bad += x > 5.000001 || (x < 0 && x * x + $2 * $2 > 25.001) ||
+              $2 * $2 > 25.001 }
+     END { exit bad || !right || !left }' c/aerofoil.su2 || fail "not a C"
+
+# A tunnel, whose walls have layers if they are named.
+for walls in "" "*"; do
+  vanguard mesh -q -p d/aerofoil --farfield tunnel --farfield-size 2 --out t \
+    --walls "$walls" --write su2,b8.ugrid,fun3d.mapbc --min-full 100
+  exits 0
+  for name in lower upper inlet outlet; do
+    says t/aerofoil.su2 "MARKER_TAG= $name"
+  done
+  vanguard check -q t/aerofoil.b8.ugrid
+  exits 0
+  says out "validity: valid"
+  if [ "$walls" ]; then code=4000; else code=3000; fi
+  says t/aerofoil.fun3d.mapbc "2 $code lower"
+done
+sed "s/^NACA.*/lower/" d/aerofoil.dat >lower.dat
+vanguard mesh -q -p lower.dat --layers no --farfield tunnel --out x
+exits 1
+says err "rename the element"
+vanguard demo sphere --out d
+vanguard mesh -q -p d/sphere --farfield c --out x
+exits 1
+says err "plane sections (.dat) only"
+
+# Edges across the slot between two plates.
+printf '%s\n' one "1 0.1" "0 0.1" "0 0" "1 0" two "1 -0.02" "0 -0.02" \
+  "0 -0.12" "1 -0.12" >slot.dat
+vanguard mesh -q -p slot.dat --layers no --gap-edges 4 --write su2 --out slot
+exits 0
+says out "the narrowest gap is 0.02 wide"
+awk '/^NPOIN/ { n = $2; next }
+     n-- > 0 && $1 > 0.45 && $1 < 0.55 && $2 > -0.021 && $2 < 0.001 { in_it++ }
+     END { exit !(in_it > 70 && in_it < 130) }' slot/slot.su2 ||
+  fail "not 4 edges across the slot"
 
 # The corners of a plate of four points are kept: its walls have their area.
 printf 'plate\n1 0.001\n0 0.001\n0 -0.001\n1 -0.001\n' >plate.dat
