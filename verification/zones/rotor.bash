@@ -26,19 +26,20 @@ boundaryField
 END
 }
 
-# flow_settings NU: simpleFoam for a laminar flow, 100 iterations.
+# flow_settings NU [CORRECTORS [ITERATIONS]]: simpleFoam for a laminar flow, with
+# 0 corrections of the pressure for cells that are not orthogonal, 100 iterations.
 flow_settings() {
   printf 'transportModel Newtonian;\nnu %s;\n' "$1" |
     dictionary constant/transportProperties
   dictionary constant/turbulenceProperties <<<'simulationType laminar;'
-  dictionary system/controlDict <<'END'
+  dictionary system/controlDict <<END
 application simpleFoam;
 startFrom startTime;
 startTime 0;
 stopAt endTime;
-endTime 100;
+endTime ${3:-100};
 deltaT 1;
-writeInterval 100;
+writeInterval ${3:-100};
 END
   dictionary system/fvSchemes <<'END'
 ddtSchemes { default steadyState; }
@@ -53,20 +54,22 @@ laplacianSchemes { default Gauss linear limited 0.5; }
 interpolationSchemes { default linear; }
 snGradSchemes { default limited 0.5; }
 END
-  dictionary system/fvSolution <<'END'
+  dictionary system/fvSolution <<END
 solvers
 {
     p { solver GAMG; smoother GaussSeidel; tolerance 1e-9; relTol 0.05; }
     U { solver PBiCGStab; preconditioner DILU; tolerance 1e-12; relTol 0.05; }
 }
-SIMPLE { consistent yes; nNonOrthogonalCorrectors 0; }
+SIMPLE { consistent yes; nNonOrthogonalCorrectors ${2:-0}; }
 relaxationFactors { equations { U 0.8; } }
 END
 }
 
-# The name of each field with its first and its last initial residual.
+# The name of each field with its initial residual in the first and in the last
+# iteration, before corrections.
 residuals() {
-  awk '/Initial residual/ { sub(",", "", $3); sub(",", "", $8)
+  awk '/^Time = / { split("", seen) }
+       /Initial residual/ && !seen[$4]++ { sub(",", "", $8)
          if (!($4 in first)) first[$4] = $8; last[$4] = $8 }
        END { for (f in last) print f, first[f], last[f] }' simpleFoam.log |
     sed 's/,//g' | sort | tee residuals | sed 's/^/  residual of /'

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-3.0-or-later
-# verification/zones/run.sh: do solvers of OpenFOAM run on the zones and inner
-# surfaces of a mesh?
+# verification/zones/run.sh: do solvers of OpenFOAM run on the zones, inner surfaces
+# and periodic patches of a mesh?
 #
 # usage: verification/zones/run.sh [--vanguard PROGRAM] [--data DIR] [--work DIR]
 #                                  [NAME...]
@@ -13,6 +13,8 @@
 #   baffle a duct with a baffle and a sheet, both with layers, in simpleFoam: the
 #          initial residuals fall below 1e-3, and all of the flow passes the
 #          sheet
+#   passage  `vanguard demo passage` between cyclic patches, in simpleFoam: the
+#          initial residuals fall below 1e-3, and the blade turns the flow
 #   wake   half of the ONERA M6 (--data) with its wake as a sheet: layers on both
 # checkMesh finds no fault in the meshes, and none in the two regions of fins.
 # Without NAME: all of them.
@@ -30,11 +32,11 @@ while [ $# -gt 0 ]; do
       declare "${1#--}=$2"
       shift 2 ;;
     -h|--help) usage; exit 0 ;;
-    rotor|fins|baffle|wake) break ;;
+    rotor|fins|baffle|passage|wake) break ;;
     *) usage >&2; exit 2 ;;
   esac
 done
-[ $# -gt 0 ] || set -- rotor fins baffle wake
+[ $# -gt 0 ] || set -- rotor fins baffle passage wake
 
 if ! command -v checkMesh >/dev/null; then
   echo "SKIP: no OpenFOAM (checkMesh is not in PATH)"
@@ -97,6 +99,8 @@ sound() {
 . "$here/fins.bash"
 # shellcheck source=verification/zones/baffle.bash
 . "$here/baffle.bash"
+# shellcheck source=verification/zones/passage.bash
+. "$here/passage.bash"
 # shellcheck source=verification/zones/wake.bash
 . "$here/wake.bash"
 for name; do

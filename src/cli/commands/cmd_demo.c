@@ -72,8 +72,8 @@ static int list_cases(void)
   return VG_EXIT_DONE;
 }
 
-/* Cases with viscous layers: Reynolds number 5 million based on the mean
- * chord, or on the length of the body. */
+/* Cases with viscous layers: Reynolds number based on the mean chord, on the
+ * length of the body, or on the axial chord. */
 static const struct rans {
   const char *name;
   double y_plus, reynolds, length;
@@ -81,13 +81,15 @@ static const struct rans {
   { "wing", 1, 5e6, 0.7 },       { "wing-half", 1, 5e6, 0.7 },
   { "wing-sharp", 1, 5e6, 0.7 }, { "wing-sharp-half", 1, 5e6, 0.7 },
   { "boom", 1, 5e6, 1 },         { "boom-half", 1, 5e6, 1 },
+  { "passage", 1, 2e4, 1 },
 };
 
 static const char layer_comment[] =
   "# Viscous layers grow on the patches with condition 4 in the .mapbc. Their\n"
-  "# first height follows from y_plus, reynolds and reference_length (the\n"
-  "# mean chord) below. 'vanguard mesh --layers no' generates isotropic cells\n"
-  "# only; '--cells mixed' does not divide prisms into tetrahedra.\n";
+  "# first height follows from y_plus, reynolds and reference_length (a chord\n"
+  "# or the length of the body) below. 'vanguard mesh --layers no' generates\n"
+  "# isotropic cells only; '--cells mixed' does not divide prisms into\n"
+  "# tetrahedra.\n";
 
 /* Returns 1 if the case has layers. */
 static int set_layers(const char *name, struct vg_settings *s)
@@ -151,6 +153,18 @@ static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
   if (zone.kind == VG_ZONE_SOLID) zone.mesh = VG_ANSWER_YES;
   memcpy(zone.seed, d->seed, sizeof zone.seed);
   return vg_settings_add(s, VG_TABLE_ZONES, &zone, err);
+}
+
+/* A pair of periodic patches, whose transform the run finds. */
+static vg_status ask_for_pair(const char *const name[2], struct vg_settings *s,
+                              struct vg_error *err)
+{
+  struct vg_periodic_row row;
+
+  vg_settings_row_default(VG_TABLE_PERIODIC, &row);
+  snprintf(row.patch_name, sizeof row.patch_name, "%s", name[0]);
+  snprintf(row.image_name, sizeof row.image_name, "%s", name[1]);
+  return vg_settings_add(s, VG_TABLE_PERIODIC, &row, err);
 }
 
 /* Adds the sheets to the surface. */
@@ -226,6 +240,7 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
     return ask_for_boom(&demo->farfield.extent, &demo->source[0], s, err);
   for (size_t i = 0; i < demo->n_source && st >= 0; i++)
     st = vg_settings_add(s, VG_TABLE_SOURCES, &demo->source[i], err);
+  if (st >= 0 && demo->periodic[0]) st = ask_for_pair(demo->periodic, s, err);
   return st < 0 ? st : ask_for_sheets(demo, s, err);
 }
 

@@ -32,17 +32,19 @@ const struct vg_demo_case *vg_demo_cases(size_t *n);
 
 /** A case ready to be meshed. */
 struct vg_demo {
-  struct vg_mesh surface; /* closed, normals point into the fluid; patches
-                             have names and conditions of both solvers */
-  struct vg_mesh sheet;   /* triangles of inner surfaces, without points of the
-                             surface: interfaces (is_interface), other sheets
-                             (is_sheet), baffles; empty in most cases */
-  struct vg_zone zone;    /* the zone of the interface, if it has a
-                             name; a solid has cells */
-  double seed[3];         /* a point in it */
-  size_t n_body_tri;      /* the first triangles of the surface, which are the
-                             body; 0: no body */
-  size_t n_body_point;    /* the first points, which are those of the body */
+  struct vg_mesh surface;  /* closed, normals point into the fluid; patches
+                              have names and conditions of both solvers */
+  struct vg_mesh sheet;    /* triangles of inner surfaces, without points of the
+                              surface: interfaces (is_interface), other sheets
+                              (is_sheet), baffles; empty in most cases */
+  struct vg_zone zone;     /* the zone of the interface, if it has a
+                              name; a solid has cells */
+  double seed[3];          /* a point in it */
+  const char *periodic[2]; /* names of a pair of periodic patches, or NULL;
+                              static */
+  size_t n_body_tri;       /* the first triangles of the surface, which are the
+                              body; 0: no body */
+  size_t n_body_point;     /* the first points, which are those of the body */
   struct vg_farfield farfield; /* of kind VG_FARFIELD_MACH: that of the surface,
                                   which the settings of the project ask for;
                                   else VG_FARFIELD_NONE */
@@ -66,7 +68,8 @@ struct vg_demo {
  *                along the Mach cone, with cells stretched along it;
  *                "disk" the sphere behind an actuator disk; "rotor" the box
  *                with an impeller in a rotating zone; "fins" the box with a
- *                solid with fins
+ *                solid with fins; "passage" one blade of a turbine between
+ *                periodic sides
  * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
  * @param out     owned by the caller, vg_demo_release; unchanged on failure

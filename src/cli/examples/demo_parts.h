@@ -55,6 +55,20 @@ int vg_demo_boom_holds(const double x[3]);
 vg_status vg_demo_boom_surface(int is_half, const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err);
 
+/** A passage of a turbine with one blade, between periodic sides. */
+void vg_demo_passage_law(double factor, struct vg_demo_spacing *law);
+
+/** The box around it. */
+void vg_demo_passage_box(double lo[3], double hi[3]);
+
+/** Returns 1 for a point of the fluid in it. */
+int vg_demo_passage_holds(const double x[3]);
+
+/** Its surface, closed. The second periodic side has the images of the points
+ * and triangles of the first one. */
+vg_status vg_demo_passage_surface(const struct vg_demo_spacing *law,
+                                  struct vg_mesh *out, struct vg_error *err);
+
 /** demo_sheets.c: a disk across the flow ahead of the sphere, with edges of the
  * size at its centre. */
 vg_status vg_demo_add_disk(const struct vg_demo_spacing *law, struct vg_demo *d,

@@ -111,6 +111,23 @@ same l_wave/wave.b8.ugrid l_again/wave.b8.ugrid
 same l_wave/wave.openfoam/constant/polyMesh/faces \
   l_again/wave.openfoam/constant/polyMesh/faces
 
+# The example: a blade with a gap at the casing, and layers in it.
+vanguard demo passage --cells 3000 --out demo
+exits 0
+says out "the geometry needs more"
+vanguard mesh -p demo/passage --quiet --cells mixed --write b8.ugrid,foam \
+  --out demo/m
+exits 0
+vanguard check demo/m/passage.b8.ugrid
+exits 0
+says out "validity: valid"
+if command -v jq >/dev/null; then
+  jq -e '.periodic_distance == 0 and .layers.points > 3000 and
+    (.periodic[0] | .turns_per_circle == 22 and .moved < 1e-12) and
+    ([.layers.patches[] | select(.name == "tip")][0].percent_any == 100)' \
+    demo/m/passage.report.json >out || fail "passage: $(cat out)"
+fi
+
 # --- OpenFOAM ------------------------------------------------------------------
 
 grep -A5 '^    hi$' t1/$boundary/boundary >out
@@ -130,7 +147,8 @@ if command -v checkMesh >/dev/null; then
   set +u
   [ -n "${WM_PROJECT_DIR:-}" ] || foam
   set -u
-  for case in fbox/box t1/ring l_wave/wave l_corner/corner l_pairs/pairs; do
+  for case in fbox/box t1/ring l_wave/wave l_corner/corner l_pairs/pairs \
+    demo/m/passage; do
     (cd $case.openfoam && checkMesh -allTopology) >out 2>err
     says out "Coupled point location match"
     says out "Mesh OK."
