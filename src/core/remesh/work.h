@@ -113,8 +113,8 @@ struct vg_tris {
   uint32_t *spare;    /* Removed triangles, for reuse. */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
-  double churn;  /* S104: blocks insert at most so many points per expected
-                    point; 0: any number. */
+  double churn;  /* S104: points that a block may insert per expected point; 0:
+                    any number. */
   size_t budget; /* Splits after which no more changes are made; 0: never. */
   int is_over;   /* 1: the budget has been used up in this surface or one of its
                     blocks. */
