@@ -89,7 +89,8 @@ layers() {
   exits 0
   says out "valid"
   if command -v jq >/dev/null; then
-    jq -e '.periodic_distance == 0 and .layers.points > 500' \
+    jq -e '.periodic_distance == 0 and .layers.points > 500 and
+      all(.layers.patches[]; .first_error_percent < 0.01)' \
       "l_$name/$name.report.json" >out || fail "$name: layers: $(cat out)"
   fi
 }
