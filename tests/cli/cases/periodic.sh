@@ -174,6 +174,15 @@ refused "surface_swap is yes" --surface-swap yes
 refused "baffles, sheets or interfaces are given" --sheets w5
 refused "patch 1 w1 is periodic, but layers" --walls w1,w5 --first 0.01
 
+# Slivers do not start the automatic remeshing.
+duct long
+awk '$1 == "vertex" { $2 *= 12 } { print }' long.stl >long.new
+mv long.new long.stl
+deck long "patch image" "w5 w6"
+vanguard plan long.stl --flow internal
+exits 0
+says out "a surface with periodic patches is not remeshed"
+
 # Other diagonals, and other numbers of triangles.
 duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"
 sed -i '/^solid w2$/,/^endsolid w2$/d' box.stl

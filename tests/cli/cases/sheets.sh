@@ -52,6 +52,14 @@ vanguard plan idle.stl --flow internal --sheets disk --walls 'w*' --first 0.004
 exits 0
 lacks out "have no effect"
 
+# Slivers are not remeshed around inner surfaces, and no note says that they can be.
+awk '$1 == "vertex" { $2 *= 12 } { print }' disk.stl >long.stl
+vanguard plan long.stl --flow internal --sheets disk
+exits 0
+says out "a surface with inner surfaces is not remeshed"
+lacks out "remesh-surface yes"
+lacks out "the surface was remeshed"
+
 # Layers on both sides of a baffle that a sheet continues.
 valid both --baffles fin --sheets plate --walls 'w*,fin' --first 0.004 \
   --cells mixed
