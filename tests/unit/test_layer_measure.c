@@ -95,8 +95,60 @@ static struct vg_wall_fields fields(const struct plate *p)
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_layers_fields(&p->m, &p->c, 1, &w, &err) < 0) fail_msg("%s", err.text);
+  if (vg_layers_fields(&p->m, &p->c, 0, NULL, 1, &w, &err) < 0)
+    fail_msg("%s", err.text);
   return w;
+}
+
+/* A vertical strip above the border of the plate at x, in a patch of its own.
+ */
+static void add_strip(struct vg_mesh *m, int x, int is_image)
+{
+  const uint32_t patch = (uint32_t)(2 + is_image);
+  const uint32_t at = (uint32_t)(x * (SIDE + 1)), top = (uint32_t)m->n_point;
+
+  for (uint32_t j = 0; j <= SIDE; j++)
+    shape_point(m, x, (int)j, m->point[at + j][2] + 1);
+  for (uint32_t j = 0; j < SIDE; j++) {
+    const uint32_t a[3] = { at + j, at + j + 1, top + j };
+    const uint32_t b[3] = { at + j + 1, top + j + 1, top + j };
+
+    shape_tri(m, a[0], a[1 + is_image], a[2 - is_image], patch);
+    shape_tri(m, b[0], b[1 + is_image], b[2 - is_image], patch);
+  }
+}
+
+/* A slope that continues through periodic patches: the foot of a column that
+ * slides in one of them is beyond the other one, whichever is the first. */
+static void walls_continue_through_periodic_patches(void **state)
+{
+  struct plate *p = *state;
+  struct vg_periodic pair = { .patch = 7,
+                              .image = 8,
+                              .shift = { SIDE, 0, SIDE } };
+
+  for (size_t i = 0; i < p->m.n_point; i++) {
+    p->m.point[i][2] = p->m.point[i][0];
+    p->c.column[i].dir[2] = sqrt(2);
+  }
+  vg_mesh_add_patch(&p->m, 7, "lo");
+  vg_mesh_add_patch(&p->m, 8, "hi");
+  add_strip(&p->m, 0, 0);
+  add_strip(&p->m, SIDE, 1);
+  for (int is_back = 0; is_back < 2; is_back++) {
+    struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+
+    if (vg_layers_fields(&p->m, &p->c, 1, &pair, 1, &w, &err) < 0)
+      fail_msg("%s", err.text);
+    assert_int_equal(w.n, (SIDE + 1) * (SIDE + 1));
+    for (size_t i = 0; i < w.n; i++) {
+      assert_float_equal(w.first[i], 1e-5, 1e-12);
+      assert_float_equal(w.total[i], w.total[0], 1e-9);
+    }
+    vg_wall_fields_release(&w);
+    pair = vg_periodic_reverse(&pair);
+  }
 }
 
 static struct vg_layer_judgement judge(const struct plate *p)
@@ -522,7 +574,8 @@ static void any_number_of_threads(void **state)
   for (int t = 0; t < 3; t++) {
     assert_int_equal(vg_layers_judge(&p.m, &p.c, t + 1, NULL, &r[t], NULL),
                      VG_OK);
-    assert_int_equal(vg_layers_fields(&p.m, &p.c, t + 1, &w[t], NULL), VG_OK);
+    assert_int_equal(vg_layers_fields(&p.m, &p.c, 0, NULL, t + 1, &w[t], NULL),
+                     VG_OK);
     assert_memory_equal(&r[t], &r[0], sizeof r[0]);
     assert_memory_equal(w[t].first, w[0].first, w[0].n * sizeof *w[0].first);
     assert_memory_equal(w[t].total, w[0].total, w[0].n * sizeof *w[0].total);
@@ -546,7 +599,8 @@ static void too_many_levels_are_refused(void **state)
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "column 4"));
   assert_int_equal(r.n_cell, 7);
-  assert_int_equal(vg_layers_fields(&p->m, &p->c, 1, &w, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_layers_fields(&p->m, &p->c, 0, NULL, 1, &w, &err),
+                   VG_ERR_INPUT);
   assert_null(w.point);
 }
 
@@ -563,7 +617,7 @@ static void no_columns_give_empty_results(void **state)
   assert_int_equal(vg_layers_judge(&m, &c, 0, NULL, &r, NULL), VG_OK);
   assert_int_equal(r.n_cell, 0);
   assert_true(r.top_angle_min == 180);
-  assert_int_equal(vg_layers_fields(&m, &c, 0, &w, NULL), VG_OK);
+  assert_int_equal(vg_layers_fields(&m, &c, 0, NULL, 0, &w, NULL), VG_OK);
   assert_int_equal(vg_layers_patches(&m, &c, &w, 0, 0, &n, &list, &all, NULL),
                    VG_OK);
   assert_int_equal(n, 0);
@@ -589,6 +643,7 @@ int main(void)
     ON_PLATE(zero_volume_is_not_positive),
     ON_PLATE(points_that_leave_a_slide_plane),
     ON_PLATE(virtual_faces_of_a_ridge),
+    ON_PLATE(walls_continue_through_periodic_patches),
     cmocka_unit_test(any_number_of_threads),
     ON_PLATE(too_many_levels_are_refused),
     cmocka_unit_test(no_columns_give_empty_results),

@@ -74,7 +74,8 @@ static size_t check(struct vg_mesh *surface, double delta1, const char *what,
       "bad corner",
       what, number, judged.n_negative, judged.n_bad_corner,
       judged.n_bad_pyramid);
-  assert_int_equal(vg_layers_fields(surface, &layers.columns, 1, &w, NULL),
+  assert_int_equal(vg_layers_fields(surface, &layers.columns, 0, NULL, 1, &w,
+                                    NULL),
                    VG_OK);
   for (size_t i = 0; i < w.n; i++) {
     const double *x = surface->point[w.point[i]];

@@ -158,7 +158,8 @@ static void heights_are_kept(const struct bench *b)
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_layers_fields(&b->surface, &b->layers.columns, 1, &w, &err) < 0)
+  if (vg_layers_fields(&b->surface, &b->layers.columns, 0, NULL, 1, &w, &err) <
+      0)
     fail_msg("%s", err.text);
   assert_int_equal(w.n, b->report.n_wall_point);
   for (size_t i = 0; i < w.n; i++) {
@@ -445,8 +446,8 @@ static void at_least(const struct bench *b, double full, double uncompressed,
   struct vg_patch_layers *list = NULL, all;
   size_t n;
 
-  assert_int_equal(vg_layers_fields(&b->surface, &b->layers.columns, 1, &w,
-                                    NULL),
+  assert_int_equal(vg_layers_fields(&b->surface, &b->layers.columns, 0, NULL, 1,
+                                    &w, NULL),
                    VG_OK);
   assert_int_equal(vg_layers_patches(&b->surface, &b->layers.columns, &w, 0, 0,
                                      &n, &list, &all, NULL),
@@ -993,7 +994,8 @@ static void a_varying_growth_law(void **state)
   b.options.law_at = law_of_the_place;
   b.options.law_user = &base;
   grow_and_check(&b);
-  assert_int_equal(vg_layers_fields(&b.surface, &b.layers.columns, 1, &w, NULL),
+  assert_int_equal(vg_layers_fields(&b.surface, &b.layers.columns, 0, NULL, 1,
+                                    &w, NULL),
                    VG_OK);
   for (size_t i = 0; i < w.n; i++) {
     double z = b.surface.point[w.point[i]][2];

@@ -35,7 +35,7 @@ passage() {
   sound
   passage_fields
   flow_settings 0.002 1 150
-  run 900 simpleFoam || return
+  run 3000 simpleFoam || return
   residuals
   # The blade turns the flow by more than half of the 45 degrees of its camber line,
   # in the mean over the outflow with its boundary layers. The middle of the outflow

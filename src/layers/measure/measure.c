@@ -5,7 +5,8 @@
  * For the first level these are the triangles at the root. For the top the
  * search continues from the nearest triangle to its neighbours until none is
  * nearer, because in a concave corner the foot of a top may be several edges
- * away from its root. */
+ * away from its root. A wall continues through a periodic patch: for roots in
+ * it, the search is repeated from the images of root and point. */
 #include "layers/measure/measure.h"
 
 #include <assert.h>
@@ -17,8 +18,16 @@
 #include "base/parallel.h"
 #include "core/geometry/nearest.h"
 #include "core/geometry/vector.h"
+#include "layers/slide/twins.h"
 
 enum { GRAIN = 512 }; /* Wall points per chunk. */
+enum { PLACES = 16 }; /* Copies of a point by periodic pairs; 4 is usual. */
+
+/* One direction of a periodic pair. */
+struct link {
+  struct vg_periodic pair;
+  uint32_t *partner; /* [surface->n_point] or VG_NO_INDEX. */
+};
 
 struct fields_job {
   const struct vg_mesh *surface;
@@ -26,7 +35,15 @@ struct fields_job {
   size_t *tri_first;    /* [surface->n_point + 1] offsets into tri[]. */
   uint32_t *tri;        /* Wall triangles at each point, sorted. */
   size_t *column_first; /* [w->n + 1] offsets into columns->column. */
+  size_t n_link;
+  struct link *link; /* [n_link] both directions of all pairs. */
   struct vg_wall_fields *w;
+};
+
+/* A point of a column, or its image by periodic pairs, and its root there. */
+struct place {
+  uint32_t root;
+  double x[3];
 };
 
 struct nearest {
@@ -67,24 +84,22 @@ static void scan(const struct fields_job *j, uint32_t at, const double x[3],
   }
 }
 
-static double distance_at(const struct fields_job *j, uint32_t root,
-                          const double x[3])
+static double distance_at(const struct fields_job *j, const struct place *at)
 {
   struct nearest best = { INFINITY, VG_NO_INDEX };
 
-  scan(j, root, x, &best);
-  return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
+  scan(j, at->root, at->x, &best);
+  return best.d2;
 }
 
 /* Each iteration reduces the distance or is the last. */
-static double distance_near(const struct fields_job *j, uint32_t root,
-                            const double x[3])
+static double distance_near(const struct fields_job *j, const struct place *at)
 {
   struct nearest best = { INFINITY, VG_NO_INDEX };
-  uint32_t done[3] = { root, root, root };
+  uint32_t done[3] = { at->root, at->root, at->root };
   double before = INFINITY;
 
-  scan(j, root, x, &best);
+  scan(j, at->root, at->x, &best);
   while (best.d2 < before) {
     const uint32_t *t = j->surface->tri[best.tri];
     uint32_t corner[3] = { t[0], t[1], t[2] };
@@ -92,10 +107,54 @@ static double distance_near(const struct fields_job *j, uint32_t root,
     before = best.d2;
     for (int k = 0; k < 3; k++)
       if (corner[k] != done[0] && corner[k] != done[1] && corner[k] != done[2])
-        scan(j, corner[k], x, &best);
+        scan(j, corner[k], at->x, &best);
     memcpy(done, corner, sizeof done);
   }
-  return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
+  return best.d2;
+}
+
+/* Whether the image `next` of place i is not in the list. A root on the axis of
+ * a rotation is its own image: only its first two images are adjacent. */
+static int is_new_place(const struct place *list, int n, int i, uint32_t next)
+{
+  if (list[i].root == next) return i == 0;
+  for (int k = 0; k < n; k++)
+    if (list[k].root == next) return 0;
+  return 1;
+}
+
+/* The point x above a root and all its images. Returns their number. */
+static int places_of(const struct fields_job *j, uint32_t root,
+                     const double x[3], struct place list[PLACES])
+{
+  int n = 1;
+
+  list[0].root = root;
+  memcpy(list[0].x, x, sizeof list[0].x);
+  for (int i = 0; i < n; i++)
+    for (size_t k = 0; k < j->n_link && n < PLACES; k++) {
+      const uint32_t next = j->link[k].partner[list[i].root];
+
+      if (next == VG_NO_INDEX || !is_new_place(list, n, i, next)) continue;
+      list[n].root = next;
+      vg_periodic_image(&j->link[k].pair, list[i].x, list[n].x);
+      n++;
+    }
+  return n;
+}
+
+/* Least distance of the point x and its images from the wall. */
+static double distance(const struct fields_job *j, uint32_t root,
+                       const double x[3],
+                       double (*from)(const struct fields_job *,
+                                      const struct place *))
+{
+  struct place list[PLACES];
+  const int n = places_of(j, root, x, list);
+  double d2 = INFINITY;
+
+  for (int i = 0; i < n; i++) d2 = fmin(d2, from(j, &list[i]));
+  return isinf(d2) ? 0 : sqrt(d2);
 }
 
 /* Largest ratio of neighbouring layers of a column, 1 for a single layer. */
@@ -140,8 +199,8 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
     return;
   }
   vg_column_points(j->columns, j->surface, c, d, x);
-  first = distance_at(j, col->root, x[1]);
-  total = distance_near(j, col->root, x[col->n]);
+  first = distance(j, col->root, x[1], distance_at);
+  total = distance(j, col->root, x[col->n], distance_near);
   growth = growth_of((const double(*)[3])x, col->n);
   if (w->asked[i] == 0 || fabs(first - asked) * w->asked[i] >
                             fabs(w->first[i] - w->asked[i]) * asked) {
@@ -257,8 +316,42 @@ static vg_status find_points(struct fields_job *j, struct vg_error *err)
   return VG_OK;
 }
 
+static vg_status find_links(struct fields_job *j, size_t n,
+                            const struct vg_periodic *pair,
+                            struct vg_error *err)
+{
+  const size_t n_point = j->surface->n_point;
+  struct vg_twins twins = VG_TWINS_INIT;
+  vg_status st = VG_OK;
+
+  if (!n) return VG_OK;
+  VG_TRY(vg_twins_open(j->surface, n, pair, &twins, err));
+  j->link = vg_calloc(2 * n, sizeof *j->link);
+  if (!j->link) VG_TRY(vg_fail_memory(err, "the periodic patches"));
+  for (; j->n_link < 2 * n; j->n_link++) {
+    const struct vg_periodic_match *match = &twins.match[j->n_link / 2];
+    struct link *link = &j->link[j->n_link];
+    const int is_back = j->n_link & 1;
+
+    link->pair = pair[j->n_link / 2];
+    if (is_back) link->pair = vg_periodic_reverse(&link->pair);
+    link->partner = vg_alloc(n_point, sizeof *link->partner);
+    if (!link->partner) VG_TRY(vg_fail_memory(err, "the periodic patches"));
+    memset(link->partner, 0xff, n_point * sizeof *link->partner);
+    for (uint32_t i = 0; i < n_point; i++)
+      if (match->point[i] != VG_PERIODIC_NONE)
+        link->partner[is_back ? match->point[i] : i] = is_back
+                                                       ? i
+                                                       : match->point[i];
+  }
+done:
+  vg_twins_release(&twins);
+  return st;
+}
+
 vg_status vg_layers_fields(const struct vg_mesh *surface,
-                           const struct vg_columns *columns, int threads,
+                           const struct vg_columns *columns, size_t n_periodic,
+                           const struct vg_periodic *periodic, int threads,
                            struct vg_wall_fields *out, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -268,10 +361,13 @@ vg_status vg_layers_fields(const struct vg_mesh *surface,
   assert(threads >= 0 && out);
   VG_TRY(find_points(&j, err));
   VG_TRY(find_triangles(&j, err));
+  VG_TRY(find_links(&j, n_periodic, periodic, err));
   vg_parallel_for(threads, w.n, GRAIN, measure_points, &j);
   *out = w;
   memset(&w, 0, sizeof w);
 done:
+  for (size_t i = 0; i < j.n_link; i++) free(j.link[i].partner);
+  free(j.link);
   free(j.tri_first);
   free(j.tri);
   free(j.column_first);

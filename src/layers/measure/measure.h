@@ -4,6 +4,7 @@
 #ifndef VG_LAYERS_MEASURE_MEASURE_H
 #define VG_LAYERS_MEASURE_MEASURE_H
 
+#include "core/periodic/periodic.h"
 #include "layers/columns/layers.h"
 
 /** Whether a is the worse of two columns of a point or face, whose cause is
@@ -46,9 +47,12 @@ struct vg_wall_fields {
 void vg_wall_fields_release(struct vg_wall_fields *w);
 
 /** Computes the fields at all points with columns. Cost: about 2 us per column
- * of 40 levels. VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels. */
+ * of 40 levels. VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels.
+ * @param periodic  [n_periodic] pairs of the surface, through which walls
+ *                  continue; they match to rounding (VG_ERR_GEOMETRY) */
 vg_status vg_layers_fields(const struct vg_mesh *surface,
-                           const struct vg_columns *columns, int threads,
+                           const struct vg_columns *columns, size_t n_periodic,
+                           const struct vg_periodic *periodic, int threads,
                            struct vg_wall_fields *out, struct vg_error *err);
 
 struct vg_range {

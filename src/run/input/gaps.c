@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/tensor.h"
+#include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
 #include "run/settings/plan_options.h"
 
@@ -142,8 +143,10 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
             "narrowest gap is %.4g wide, at (%.6g, %.6g, %.6g)%s",
             s->gap_edges, found.n, found.narrowest, found.at[0], found.at[1],
             found.at[2],
-            b->is_remeshed || b->read->is_section
-              ? ""
+            b->is_remeshed || b->read->is_section ? ""
+            : vg_read_keeps_triangles(b->read)
+              ? "; the surface is not remeshed, so cells between its coarse "
+                "faces cannot become small (give one with shorter edges there)"
               : "; the surface is not remeshed, so cells between its coarse "
                 "faces cannot become small (remesh_surface yes remeshes it)");
   else

@@ -10,14 +10,24 @@
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
-int vg_boundary_wants_inner(const struct vg_boundary *b)
+static int wants_inner(const struct vg_settings *s)
 {
-  const struct vg_settings *s = &b->read->settings;
   int wants = *s->baffles || *s->sheets || *s->zone_interfaces;
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role > VG_PATCH_WALL;
   return wants;
+}
+
+int vg_boundary_wants_inner(const struct vg_boundary *b)
+{
+  return wants_inner(&b->read->settings);
+}
+
+const char *vg_read_keeps_triangles(const struct vg_read *r)
+{
+  if (r->settings.n_periodic) return "periodic patches";
+  return wants_inner(&r->settings) ? "inner surfaces" : NULL;
 }
 
 const char *vg_inner_source(const struct vg_settings *s, char *text,

@@ -67,7 +67,8 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
   if (r->is_section) return 0;
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
-  if (is_tessellation(r)) return sliver_share(surface) > MOST;
+  if (is_tessellation(r))
+    return !vg_read_keeps_triangles(r) && sliver_share(surface) > MOST;
   return !*r->files.front && vg_format_is_cad(r->files.surface) &&
          !(r->settings.wrap > 0);
 }
@@ -75,6 +76,7 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
 void vg_boundary_note_slivers(struct vg_boundary *b)
 {
   const double share = sliver_share(&b->surface);
+  const char *keeps = vg_read_keeps_triangles(b->read);
 
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
   if (b->is_remeshed)
@@ -83,6 +85,12 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
             "surface is treated as a tessellation and is remeshed "
             "(--remesh-surface no keeps it unchanged)",
             100 * share);
+  else if (keeps)
+    vg_note(b->notes,
+            "%.0f %% of the triangles have an angle below 10 degrees, and so "
+            "will the cells on them: a surface with %s is not remeshed; give "
+            "one with better triangles",
+            100 * share, keeps);
   else if (!(b->read->settings.wrap > 0) && !vg_boundary_is_stretched(b))
     vg_note(b->notes,
             "%.0f %% of the triangles have an angle below 10 degrees, and so "

@@ -51,6 +51,11 @@ struct vg_farfield vg_boundary_farfield(const struct vg_boundary *b);
  * by the column `role` of the table `patches`. */
 int vg_boundary_wants_inner(const struct vg_boundary *b);
 
+/** Why the settings do not allow a surface other than a CAD model to be
+ * remeshed or its edges to be swapped: "periodic patches", "inner surfaces";
+ * NULL: they do. Static string. */
+const char *vg_read_keeps_triangles(const struct vg_read *read);
+
 #define VG_INNER_SOURCE 200
 
 /** Where the inner surfaces are requested, for messages: "baffles fin*, sheets
@@ -109,8 +114,8 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
  * --------------------------- */
 
 /** 1 if this surface is remeshed: `auto` remeshes CAD surfaces, and
- * tessellations (STL, OBJ, Cart3D) of which more than half of the triangles
- * are slivers. */
+ * tessellations (STL, OBJ, Cart3D) of which more than a fifth of the triangles
+ * are slivers, unless their triangles must stay (vg_read_keeps_triangles). */
 int vg_read_is_remeshed(const struct vg_read *read,
                         const struct vg_mesh *surface);
 

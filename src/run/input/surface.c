@@ -194,9 +194,14 @@ vg_status vg_boundary_finish_conditions(struct vg_boundary *b,
 {
   char list[12 * SHOWN_PATCHES + 8] = "";
   size_t n = 0, at = 0;
-  const int is_partly_set = give_openings(b) > 0;
-  uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
+  const int is_partly_set = give_openings(b) > 0 ||
+                            b->read->settings.n_periodic;
+  uint8_t *has_faces;
+  const vg_status st = vg_pairs_give_conditions(&b->read->settings, &b->surface,
+                                                err);
 
+  if (st < 0) return st;
+  has_faces = vg_calloc(b->surface.n_patch, 1);
   if (!has_faces) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < b->surface.n_tri; i++)
     has_faces[b->surface.tri_patch[i]] = 1;
@@ -559,7 +564,9 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
                                  struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
-  const char *what = b->is_remeshed ? "the surface is remeshed (remesh_surface)"
+  const char *what = b->is_remeshed && s->remesh == VG_ANSWER_AUTO
+                     ? "remesh_surface auto remeshes a CAD model"
+                   : b->is_remeshed ? "the surface is remeshed (remesh_surface)"
                    : b->read->is_section ? "the input is a plane section"
                    : s->wrap > 0         ? "wrap is given"
                    : vg_boundary_wants_inner(b)
@@ -570,9 +577,9 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
   if (!s->n_periodic || !what) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "%s: the table periodic requires patches whose triangles "
-                 "match and are used as given, but %s; change this, or remove "
-                 "the table",
-                 b->read->files.stem, what);
+                 "match and are used as given, but %s; %s, or remove the table",
+                 b->read->files.stem, what,
+                 b->is_remeshed ? "set remesh_surface to no" : "change this");
 }
 
 vg_status vg_boundary_shape(struct vg_read *read,
@@ -594,6 +601,8 @@ vg_status vg_boundary_shape(struct vg_read *read,
   b->require_bc = has_conditions(&b->surface);
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   VG_TRY(refuse_periodic(b, err));
+  if (b->require_bc)
+    VG_TRY(vg_pairs_give_conditions(&read->settings, &b->surface, err));
   if (read->is_section) {
     b->is_remeshed = 0;
     VG_TRY(vg_boundary_divide_section(b, show, err));

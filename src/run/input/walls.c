@@ -15,6 +15,7 @@
 #include "io/vgrid/mapbc.h"
 #include "layers/slide/slide.h"
 #include "run/input/shape_parts.h"
+#include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
 
 #define MESHING_WALL 2 /* Class of a .d3m patch on which layers grow. */
@@ -144,18 +145,26 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
 }
 
 /* A patch without faces cannot have layers, even if they are requested. */
-static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
+static vg_status refuse_empty(const struct vg_boundary *b,
+                              const uint8_t *has_faces,
                               const enum vg_wall_reason *reason,
                               struct vg_error *err)
 {
+  const struct vg_mesh *m = &b->surface;
+  const int is_cut = vg_zones_lack_cells(&b->read->settings);
+
   for (size_t i = 0; i < m->n_patch; i++)
     if (reason[i] == VG_WALL_SETTING && !has_faces[i])
       return vg_fail(err, VG_ERR_INPUT,
                      "layers are requested on patch %d%s%s, but none of its "
-                     "faces is left (the repair or the wrap removed them); "
-                     "remove it from the list",
+                     "faces is left (%s removed them); name only the other "
+                     "patches%s",
                      (int)m->patch[i].id, *m->patch[i].name ? " " : "",
-                     m->patch[i].name);
+                     m->patch[i].name,
+                     is_cut ? "a zone without cells, the repair or the wrap"
+                            : "the repair or the wrap",
+                     is_cut ? ", or mesh the zone (mesh yes in the table zones)"
+                            : "");
   return VG_OK;
 }
 
@@ -304,7 +313,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   if (vg_walls_asked(&b->read->settings) || b->require_bc)
     VG_TRY(refuse_periodic(b, reason, err));
-  VG_TRY(refuse_empty(m, has_faces, reason, err));
+  VG_TRY(refuse_empty(b, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
   if (!*n_wall && vg_walls_asked(&b->read->settings)) st = no_walls(b, err);
 done:

@@ -34,6 +34,13 @@ static int is_empty_row(const struct vg_zone_row *r)
          (r->mesh == VG_ANSWER_AUTO && r->kind == VG_ZONE_SOLID);
 }
 
+int vg_zones_lack_cells(const struct vg_settings *s)
+{
+  for (size_t i = 0; i < s->n_zone; i++)
+    if (is_empty_row(&s->zone[i])) return 1;
+  return 0;
+}
+
 static vg_status refuse_seed(const struct vg_zone_row *r, uint32_t zone,
                              struct vg_error *err)
 {

@@ -20,6 +20,9 @@ vg_status vg_zones_make(const struct vg_settings *s,
                         struct vg_zone_map *z, double **hmax,
                         struct vg_error *err);
 
+/** Whether a row of the table `zones` is a zone without cells. */
+int vg_zones_lack_cells(const struct vg_settings *s);
+
 /** A zone with a requested size, and what limits it there: the patch of the
  * longest edge among the triangles that look into the zone. */
 struct vg_zone_limit {

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "layers/columns/growth_law.h"
@@ -145,6 +146,60 @@ void vg_note_missing_first(const struct vg_layer_stage *s,
           n_wall, n_wall > 1 ? "s" : "", n_wall > 1 ? "es" : "", list);
 }
 
+/* Columns of a row of the table `layers` that have values, as "first, count".
+ * out[size]. */
+static void given_columns(const struct vg_layer_row *row, char *out,
+                          size_t size)
+{
+  const struct vg_setting_table *t = vg_settings_table(VG_TABLE_LAYERS);
+  struct vg_layer_row none;
+  size_t at = 0;
+
+  *out = 0;
+  vg_settings_row_default(VG_TABLE_LAYERS, &none);
+  for (size_t i = 0; i < t->n_column; i++) {
+    const struct vg_param *p = &t->column[i];
+    char value[2][2 * VG_LIST_MAX + 3];
+
+    if (p->type == VG_PARAM_PATCH || p->type == VG_PARAM_WORD) continue;
+    vg_param_format(p, row, value[0], sizeof value[0]);
+    vg_param_format(p, &none, value[1], sizeof value[1]);
+    if (strcmp(value[0], value[1]) == 0 || at >= size) continue;
+    at += (size_t)snprintf(out + at, size - at, "%s%s", at ? ", " : "",
+                           p->name);
+  }
+}
+
+/* Rows of the table `layers` with values for patches without layers. */
+static void note_idle_rows(const struct vg_layer_stage *s,
+                           struct vg_boundary *b)
+{
+  const struct vg_settings *set = &b->read->settings;
+  char list[SHOWN_PATCHES * (VG_NAME_MAX + 120)] = "", given[100];
+  size_t n = 0, at = 0;
+
+  for (size_t i = 0; i < set->n_layer; i++) {
+    const struct vg_layer_row *row = &set->layer_row[i];
+    const size_t p = vg_mesh_find_patch(&b->surface, row->id);
+
+    if (p == SIZE_MAX || s->reason[p] != VG_WALL_NOT ||
+        row->grow == VG_ANSWER_NO)
+      continue;
+    given_columns(row, given, sizeof given);
+    if (*given && n++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, sizeof list - at, "%s%d %s (%s)",
+                             n > 1 ? ", " : "", (int)row->id,
+                             b->surface.patch[p].name, given);
+  }
+  if (n)
+    vg_note(b->notes,
+            "table layers: no layers grow on patch%s %s%s, so that these "
+            "columns have no effect: set the column grow to yes, or name the "
+            "patch%s in walls",
+            n > 1 ? "es" : "", list, n > SHOWN_PATCHES ? ", ..." : "",
+            n > 1 ? "es" : "");
+}
+
 void vg_note_layers(const struct vg_layer_stage *s, struct vg_boundary *b)
 {
   const struct vg_layer_settings *l = &b->read->settings.layer;
@@ -153,6 +208,7 @@ void vg_note_layers(const struct vg_layer_stage *s, struct vg_boundary *b)
   size_t n = 0, n_odd = wall_numbers(s, &b->surface, 1, list, sizeof list);
 
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
+  note_idle_rows(s, b);
   if (n_odd)
     vg_note(b->notes,
             "%zu patch%s layers but a boundary condition that is not viscous: "

@@ -711,8 +711,9 @@ static vg_status measure(struct vg_layer_stage *s,
   vg_status st;
 
   VG_TRY(judge(s, surface, err));
-  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
-                          &s->fields, err));
+  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.n_periodic,
+                          s->options.periodic, s->options.threads, &s->fields,
+                          err));
   VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
                            s->length, &s->n_wall, &s->wall, &s->all, err));
   if (s->has_shear) VG_TRY(vg_first_measure(s, surface, &s->laws->at, err));

@@ -201,6 +201,38 @@ done:
   return st;
 }
 
+static vg_status give_condition(struct vg_patch *p, struct vg_error *err)
+{
+  const int32_t bc = p->bc != VG_BC_NONE ? p->bc : p->bc_fun3d;
+
+  if (bc != VG_BC_NONE && bc != VG_BC_PERIODIC)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d%s%s is in the table periodic, but its boundary "
+                   "condition is %d; leave the condition out, set %d, or "
+                   "remove the patch from the table",
+                   (int)p->id, *p->name ? " " : "", p->name, (int)bc,
+                   VG_BC_PERIODIC);
+  p->bc = p->family = p->bc_fun3d = VG_BC_PERIODIC;
+  return VG_OK;
+}
+
+vg_status vg_pairs_give_conditions(const struct vg_settings *s,
+                                   struct vg_mesh *m, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < 2 * s->n_periodic && st >= 0; i++) {
+    const struct vg_periodic_row *row = &s->periodic_row[i / 2];
+    int32_t id;
+
+    st = i % 2
+         ? find_patch(m, i / 2 + 1, row->image, row->image_name, &id, err)
+         : find_patch(m, i / 2 + 1, row->patch, row->patch_name, &id, err);
+    if (st >= 0) st = give_condition(&m->patch[vg_mesh_find_patch(m, id)], err);
+  }
+  return st;
+}
+
 /* Puts the points of both patches of all pairs in the same order. */
 static vg_status order(const struct vg_pairs *list, struct vg_mesh *m,
                        int *is_changed, struct vg_error *err)

@@ -32,6 +32,14 @@ vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
                           struct vg_pairs *list, size_t *n_moved,
                           int *is_changed, struct vg_error *err);
 
+#define VG_BC_PERIODIC 6100 /* FUN3D's code, also written as USM3D's. */
+
+/** Gives the patches of the table `periodic` that have no condition the
+ * condition VG_BC_PERIODIC. Names and numbers that m does not have are left to
+ * vg_pairs_settle. VG_ERR_INPUT for a patch with another condition. */
+vg_status vg_pairs_give_conditions(const struct vg_settings *s,
+                                   struct vg_mesh *m, struct vg_error *err);
+
 /** Whether the patch with this number is in a pair. */
 int vg_pairs_have(const struct vg_pairs *list, int32_t id);
 

@@ -268,7 +268,9 @@ static void slivers_text(FILE *to, const struct vg_mesh *m,
           "(one very short edge).\n"
           "  They cause poor cells. surface_swap removes those that it can "
           "without visibly changing\n"
-          "  the surface; remesh_surface also replaces the others:\n",
+          "  the surface; remesh_surface also replaces the others. Neither "
+          "is possible with periodic\n"
+          "  patches or inner surfaces:\n",
           q->n_cap, q->n_needle);
   for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
     const struct vg_worst_face *w = &q->worst[i];

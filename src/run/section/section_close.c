@@ -280,6 +280,22 @@ static void put_outer(struct vg_mesh *m, size_t n_wall, size_t n_outer,
   }
 }
 
+static int has_patch(const struct vg_mesh *m, const char *name)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (!strcmp(m->patch[i].name, name)) return 1;
+  return 0;
+}
+
+static vg_status refuse_name(const char *name, const char *what,
+                             struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_INPUT,
+                 "an element of the section has the name %s, which a %s has; "
+                 "rename the element",
+                 name, what);
+}
+
 /* The patches of the sides, then the planes. */
 static vg_status add_patches(const struct vg_mesh *strip,
                              const struct vg_section_outer *outer,
@@ -305,18 +321,16 @@ static vg_status add_patches(const struct vg_mesh *strip,
   m->n_patch = strip->n_patch;
   memcpy(m->patch, strip->patch, m->n_patch * sizeof *m->patch);
   for (int i = 0; i < (is_tunnel ? 4 : 1); i++) {
-    for (size_t k = 0; k < strip->n_patch; k++)
-      if (!strcmp(strip->patch[k].name, list[i].name))
-        return vg_fail(err, VG_ERR_INPUT,
-                       "an element of the section has the name %s, which a "
-                       "side of the farfield has; rename the element",
-                       list[i].name);
+    if (has_patch(strip, list[i].name))
+      return refuse_name(list[i].name, "side of the farfield", err);
     at = add_patch(m, list[i].name, list[i].bc, list[i].fun3d);
     if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
     if (is_tunnel) side[list[i].side] = (uint32_t)at;
     for (int k = 0; k < SIDES && !is_tunnel; k++) side[k] = (uint32_t)at;
   }
   for (int i = 0; i < 2; i++) {
+    if (has_patch(strip, planes[i].name))
+      return refuse_name(planes[i].name, "symmetry plane", err);
     at = add_patch(m, planes[i].name, planes[i].bc, planes[i].fun3d);
     if (at == SIZE_MAX) return vg_fail_memory(err, "the patches");
     plane[i] = (uint32_t)at;

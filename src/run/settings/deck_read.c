@@ -152,6 +152,21 @@ static const char *any_name(const void *user, size_t i)
   return name;
 }
 
+/* A column of the table `farfield` that is given like a setting. `near` is as
+ * vg_suggest_place leaves it. Returns out, or NULL for another name. */
+static const char *farfield_hint(const struct vg_suggestion *near,
+                                 char out[VG_HINT_SIZE])
+{
+  const char *dot = near->n ? strchr(near->name[0], '.') : NULL;
+
+  if (!dot || strcmp(dot, ".kind") == 0) return NULL;
+  snprintf(out, VG_HINT_SIZE,
+           "did you mean the column %s of the table farfield? It needs kind, "
+           "too: a line 'farfield', a line 'kind %s' and a line of values",
+           dot + 1, dot + 1);
+  return out;
+}
+
 /* Suggest a column of the table or, outside tables, a setting or a table. */
 static vg_status unknown_name(const struct reader *r, const char *name,
                               const struct vg_setting_table *table,
@@ -160,18 +175,23 @@ static vg_status unknown_name(const struct reader *r, const char *name,
   struct vg_names names = { VG_TABLE_N, any_name, NULL };
   struct vg_suggestion near;
   char hint[VG_HINT_SIZE];
-  const char *text;
+  const char *text, *remedy = NULL;
   int in_farfield;
 
   while (vg_settings_name(names.n - VG_TABLE_N, &text, &in_farfield)) names.n++;
   if (table)
     names = (struct vg_names){ table->n_column, param_name, table->column };
   vg_suggest(name, &names, &near);
-  if (!table) vg_suggest_place(&near);
+  if (!table) {
+    vg_suggest_place(&near);
+    remedy = farfield_hint(&near, hint);
+  }
+  if (!remedy)
+    remedy = vg_hint(&near, "", "'vanguard deck' writes a deck with all names",
+                     hint);
   return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: unknown name '%s' in %s; %s",
                  r->in.path, r->line, name, table ? table->name : "this deck",
-                 vg_hint(&near, "",
-                         "'vanguard deck' writes a deck with all names", hint));
+                 remedy);
 }
 
 /* Look up the tokens as names in p[n]; table NULL: the parameters. */

@@ -38,6 +38,13 @@ exits 1
 says err "unknown name 'scael' in this deck; did you mean 'scale'?"
 says err "slip.deck:$(grep -n '^scael' slip.deck | cut -d: -f1): "
 absent three
+for name in farfield_lengths farfield.lengths; do
+  printf 'a typing error\n\n%s\n20\n' $name >slip.deck
+  vanguard mesh -q -p box --deck slip.deck --out three
+  exits 1
+  says err "did you mean the column lengths of the table farfield?"
+done
+absent three
 vanguard mesh -q -p box --deck missing.deck
 exits 1
 says err "missing.deck"

@@ -89,7 +89,8 @@ layers() {
   exits 0
   says out "valid"
   if command -v jq >/dev/null; then
-    jq -e '.periodic_distance == 0 and .layers.points > 500' \
+    jq -e '.periodic_distance == 0 and .layers.points > 500 and
+      all(.layers.patches[]; .first_error_percent < 0.01)' \
       "l_$name/$name.report.json" >out || fail "$name: layers: $(cat out)"
   fi
 }
@@ -190,6 +191,34 @@ refused "wrap is given" --wrap 0.1
 refused "surface_swap is yes" --surface-swap yes
 refused "baffles, sheets or interfaces are given" --sheets w5
 refused "patch 1 w1 is periodic, but layers" --walls w1,w5 --first 0.01
+
+# Periodic patches get FUN3D's code, among other conditions and without any.
+code() { awk -v name="$2" '$NF == name { print $2 }' "$1"; }
+duct box
+deck box "patch image" "w1 w2"
+vanguard mesh box.stl --flow internal --quiet --write b8.ugrid --out bare
+exits 0
+[ "$(code bare/box.mapbc w1)/$(code bare/box.mapbc w3)" = 6100/5 ] ||
+  fail "without conditions: $(cat bare/box.mapbc)"
+lacks out "(number 1"
+printf '\npatches\nid bc\nw3 4\nw4 4\nw5 3\nw6 3\n' >>box.deck
+vanguard mesh box.stl --flow internal --quiet --write b8.ugrid --out some
+exits 0
+[ "$(code some/box.mapbc w2)/$(code some/box.mapbc w3)" = 6100/4 ] ||
+  fail "with conditions: $(cat some/box.mapbc)"
+for code in 1 3 4; do
+  sed "s/^w3 .*/&\nw1 $code/" box.deck >err.deck
+  refused "patch 1 w1 is in the table periodic, but its boundary condition is $code"
+done
+
+# Slivers do not start the automatic remeshing.
+duct long
+awk '$1 == "vertex" { $2 *= 12 } { print }' long.stl >long.new
+mv long.new long.stl
+deck long "patch image" "w5 w6"
+vanguard plan long.stl --flow internal
+exits 0
+says out "a surface with periodic patches is not remeshed"
 
 # Other diagonals, and other numbers of triangles.
 duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"

@@ -137,6 +137,12 @@ sed "s/^NACA.*/lower/" d/aerofoil.dat >lower.dat
 vanguard mesh -q -p lower.dat --layers no --farfield tunnel --out x
 exits 1
 says err "rename the element"
+for name in farfield back front; do
+  sed "s/^NACA.*/$name/" d/aerofoil.dat >$name.dat
+  vanguard mesh -q -p $name.dat --layers no --out x
+  exits 1
+  says err "an element of the section has the name $name, which a s"
+done
 vanguard demo sphere --out d
 vanguard mesh -q -p d/sphere --farfield c --out x
 exits 1

@@ -40,6 +40,26 @@ same o_roles/roles.b8.ugrid again/roles.b8.ugrid
 valid disk --sheets disk --walls 'w*' --first 0.004 --cells mixed
 says out "7            32            32            32       0.25  disk"
 
+# Values of the table layers for a side without layers are not ignored in silence.
+cp disk.stl idle.stl
+printf 'idle\n\nlayers\nid first count\nw1 2e-3 -\ndisk 1e-3 4\n' >idle.deck
+vanguard plan idle.stl --flow internal --sheets disk --walls 'w*' --first 0.004
+exits 0
+says out "no layers grow on patch 7 disk (first, count), so that these columns"
+says out "set the column grow to yes, or name the patch in walls"
+printf 'idle\n\nlayers\nid grow first\ndisk no 1e-3\n' >idle.deck
+vanguard plan idle.stl --flow internal --sheets disk --walls 'w*' --first 0.004
+exits 0
+lacks out "have no effect"
+
+# Slivers are not remeshed around inner surfaces, and no note says that they can be.
+awk '$1 == "vertex" { $2 *= 12 } { print }' disk.stl >long.stl
+vanguard plan long.stl --flow internal --sheets disk
+exits 0
+says out "a surface with inner surfaces is not remeshed"
+lacks out "remesh-surface yes"
+lacks out "the surface was remeshed"
+
 # Layers on both sides of a baffle that a sheet continues.
 valid both --baffles fin --sheets plate --walls 'w*,fin' --first 0.004 \
   --cells mixed

@@ -375,6 +375,14 @@ exits 1
 says err "These patches are inner surfaces and close nothing: "
 says err "remove it from the list of baffles, sheets or zone_interfaces"
 
+# Layers on a patch that bounds only a zone without cells.
+printf 'z\n\nzones\nname x y z mesh\nout 0.1 0.1 0.1 no\n' >gone.deck
+vanguard mesh one.stl --deck gone.deck --flow internal --zone-interfaces rot \
+  --walls 'w1,rot' --first 0.002 --quiet --out no
+exits 1
+says err "w1, but none of its faces is left (a zone without cells, the repair"
+says err "or mesh the zone (mesh yes in the table zones)"
+
 # One side of the box, without which it looks like a half model.
 for flow in internal external; do
   vanguard mesh one.stl --flow $flow --zone-interfaces 'w1,rot' --quiet --out no
