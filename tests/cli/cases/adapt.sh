@@ -60,6 +60,32 @@ vanguard adapt box.deck -o a --field r
 exits 1
 says err "is the record of a loop with another field"
 
+# Files that are found next to the surface belong to the loop, too.
+cp box.lb8.ugrid near.lb8.ugrid
+printf 'near\n\nhmax\n0.3\n' >near.deck
+near() { # CYCLES
+  vanguard adapt -q -p near -o n --solver ./solve.sh --field q --cells 2000 \
+    --cycles "$1" -- --write mesh,b8.ugrid
+}
+near 1
+exits 0
+cp near.deck near.deck.first
+printf 'near\n\nhmax\n0.25\n' >near.deck
+for cycles in 1 2; do
+  near $cycles
+  exits 1
+  says err "is the record of a loop with another deck; give another folder"
+done
+cp near.deck.first near.deck
+cp box.mapbc near.mapbc
+near 2
+exits 1
+says err "is the record of a loop with another mapbc; give another folder"
+absent n/cycle-2
+rm near.mapbc
+near 2
+exits 0
+
 # A loop that fails, and one that is killed at any step, end with the same
 # meshes.
 touch fail
