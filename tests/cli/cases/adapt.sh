@@ -134,15 +134,20 @@ case "\$*" in
   *cycle-2/metric.vtu*--out*|*cycle-2/metric-2.vtu*--out*) ;;
   mesh*cycle-2/metric.vtu*|mesh*cycle-2/metric-2.vtu*)
     echo "{\"error_kind\": \"\$KIND\"}"
-    echo "vanguard: no mesh here" >&2; exit 1 ;;
+    echo "vanguard: no mesh here\$MORE" >&2; exit 1 ;;
 esac
 exec "$program" "\$@"
 END
 chmod +x stand-in
-export KIND=memory
+export KIND=memory MORE
+MORE="; $(printf 'a patch, %.0s' $(seq 60))and the remedy"
 vanguard adapt box.deck -o c --program ./stand-in
 exits 1
-says err "cycle 2: no mesh: no mesh here; the log is"
+says err "no mesh: no mesh here; a patch, a patch"
+says err "a patch, and the remedy; the log is $PWD/c/cycle-2/mesh.log"
+lacks out "note:" # there is no mesh that could miss a limit
+lacks c/adapt.json "does not meet a limit"
+MORE=""
 export KIND=geometry
 vanguard adapt box.deck -o c --program ./stand-in
 exits 0
