@@ -31,7 +31,7 @@ void vg_html_wakes(struct page *p)
   vg_page_markup(
     p, "<p>Cells across each wake, in edge lengths of the cells, on lines "
        "across it at distances in chords behind the trailing edge. Lines that "
-       "are mostly in walls are not measured.</p>\n"
+       "are mostly in walls or layers are not measured.</p>\n"
        "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">Wake</th>"
        "<th scope=\"col\">Chords</th><th scope=\"col\">Requested</th>"
        "<th scope=\"col\">Reached, mean</th><th scope=\"col\">Least</th>"

@@ -86,11 +86,13 @@ int vg_wake_probe(const struct vg_wake *w, const struct vg_wake_panel *p,
 struct vg_comm;
 struct vg_slices;
 
-/** Count the cells along probes: a tetrahedron counts with the length of the
- * probe within it, in edge lengths of the tetrahedron along the probe (of the
- * metric in which it is regular). Numbers are extrapolated to whole probes.
- * Those that have less than half of their length in tetrahedra, because they
- * cross walls, layers of other cells or the boundary, are not measured.
+/** Count the cells along probes: a tetrahedron, or a prism outside of layers,
+ * counts with the length of the probe within it, in edge lengths of the cell
+ * along the probe (of the metric in which it is regular). Prisms outside of
+ * layers are those of plane sections: parallelepipeds cut in half. Numbers are
+ * extrapolated to whole probes. Those that have less than half of their length
+ * in such cells, because they cross walls, layers of other cells or the
+ * boundary, are not measured.
  * Collective; the probes are the same on all ranks, also afterwards.
  * VG_ERR_MEMORY. */
 vg_status vg_wake_measure(struct vg_comm *c, const struct vg_slices *s,

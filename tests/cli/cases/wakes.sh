@@ -147,6 +147,20 @@ for role in sheets baffles; do
   says attached_$role/attached.report.json '"valid": true'
 done
 
+# Cells across the wake of a section, with triangles and with quadrilaterals in
+# its layers.
+vanguard demo aerofoil --out a
+for cells in tets mixed; do
+  vanguard mesh -q -p a/aerofoil --wakes auto --cells $cells --out a/$cells
+  exits 0
+  python3 - a/$cells/aerofoil.report.json <<'PY' || fail "cells in the section"
+import json, sys
+for at in json.load(open(sys.argv[1]))["wakes"][0]["cells_across"]:
+    assert at["lines"] == at["lines_measured"] == 1, at
+    assert 0.85 * 5 < at["reached_mean"] < 1.4 * 5, at
+PY
+done
+
 # A ball has none.
 vanguard demo sphere --cells 20000 --out s
 exits 0
