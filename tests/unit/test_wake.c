@@ -380,13 +380,17 @@ static void cells_along_lines(void **state)
 {
   struct vg_mesh m = make_box(8);
   struct vg_wake_probe p[4] = {
-    { .x = { { 0.31, 0.27, 0.01 }, { 0.31, 0.27, 0.99 } } },
+    { .x = { { 0.31, 0.27, 0.01 }, { 0.31, 0.27, 0.99 } },
+      .flow = { 1, 0, 0 } },
     { .x = { { 0.1, 0.57, 0.33 }, { 0.9, 0.57, 0.33 } } },
     { .x = { { 0.5, -0.9, 0.41 }, { 0.5, 0.4, 0.41 } } }, /* mostly outside */
     { .x = { { 0.52, -0.4, 0.41 }, { 0.52, 1, 0.41 } } }
   };
 
   (void)state;
+  for (size_t i = 0; i < m.n_point; i++) m.point[i][2] /= 4;
+  for (int i = 0; i < 4; i++)
+    for (int end = 0; end < 2; end++) p[i].x[end][2] /= 4;
   for (size_t parts = 1; parts <= 5; parts += 2) {
     struct cut c;
 
@@ -394,6 +398,8 @@ static void cells_along_lines(void **state)
     for (int i = 0; i < 4; i++) p[i].got = 7;
     assert_int_equal(vg_wake_measure(NULL, &c.s, 2, 4, p, NULL), VG_OK);
     assert_near(p[0].got, 0.98 * 8, 1e-5);
+    assert_near(p[0].stretch, 4, 1e-5);
+    assert_true(isnan(p[2].stretch));
     assert_near(p[1].got, 0.8 * 8, 1e-5);
     assert_true(isnan(p[2].got));
     assert_near(p[3].got, 1.4 * 8, 1e-5); /* extrapolated */

@@ -17,12 +17,15 @@
 /* Least part of a probe in cells that count. */
 #define COVERED 0.5
 
+/* Of one probe: cells along it, cells along its flow, part in cells. */
+enum { ACROSS, ALONG, COVER, SUMS };
+
 struct measure {
   size_t n;
   const struct vg_wake_probe *probe;
   uint64_t n_layer_prism;
   struct vg_box_tree tree;
-  atomic_ullong *cells, *covered; /* [n] in UNIT */
+  atomic_ullong (*sum)[SUMS]; /* [n] in UNIT */
 };
 
 /* A tetrahedron or a prism: gradients of its coordinates, which are 0 at its
@@ -83,29 +86,36 @@ static double clip(const struct cell *t, const struct vg_wake_probe *p)
   return fmax(to - from, 0);
 }
 
-/* Edge lengths per length of the probe: the length of its vector in the metric
- * in which the cell is regular with edges of length 1. */
-static double edges_along(const struct cell *t, const struct vg_wake_probe *p)
+/* Edge lengths of the cell along d: the length of d in the metric in which the
+ * cell is regular with edges of length 1. */
+static double edges_along(const struct cell *t, const double d[3])
 {
-  double d[3], g[3], slant;
+  double g[3], slant;
 
-  vg_sub(p->x[1], p->x[0], d);
   for (int k = 0; k < 3; k++) g[k] = vg_dot(d, t->gradient[k]);
   slant = t->is_prism ? 0 : g[1] * g[2] + g[2] * g[0];
   return sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] + g[0] * g[1] + slant);
 }
 
+static void add(struct measure *m, uint32_t i, int which, double value)
+{
+  atomic_fetch_add(&m->sum[i][which], (unsigned long long)(value / UNIT));
+}
+
 static int visit(void *context, uint32_t i)
 {
   struct cell *t = context;
-  struct measure *m = t->m;
-  const double part = clip(t, m->probe + i);
+  const struct vg_wake_probe *p = t->m->probe + i;
+  const double part = clip(t, p);
+  double across[3], along[3], length;
 
   if (!(part > 0)) return 0;
-  atomic_fetch_add(m->covered + i, (unsigned long long)(part / UNIT));
-  atomic_fetch_add(m->cells + i,
-                   (unsigned long long)(part * edges_along(t, m->probe + i) /
-                                        UNIT));
+  vg_sub(p->x[1], p->x[0], across);
+  length = vg_norm(across);
+  for (int k = 0; k < 3; k++) along[k] = length * p->flow[k];
+  add(t->m, i, ACROSS, part * edges_along(t, across));
+  add(t->m, i, ALONG, part * edges_along(t, along));
+  add(t->m, i, COVER, part);
   return 0;
 }
 
@@ -154,6 +164,15 @@ static vg_status build_tree(struct measure *m, struct vg_error *err)
   return st;
 }
 
+static void take(const uint64_t sum[SUMS], struct vg_wake_probe *p)
+{
+  const double across = (double)sum[ACROSS], along = (double)sum[ALONG];
+  const int is_measured = UNIT * (double)sum[COVER] >= COVERED;
+
+  p->got = is_measured ? across / (double)sum[COVER] : NAN;
+  p->stretch = is_measured && along > 0 ? across / along : NAN;
+}
+
 vg_status vg_wake_measure(struct vg_comm *c, const struct vg_slices *s,
                           int threads, size_t n, struct vg_wake_probe *probe,
                           struct vg_error *err)
@@ -162,31 +181,23 @@ vg_status vg_wake_measure(struct vg_comm *c, const struct vg_slices *s,
                        .probe = probe,
                        .n_layer_prism = s->n_layer_cell[VG_SLICE_PRI],
                        .tree = VG_BOX_TREE_INIT };
-  uint64_t *sum;
+  uint64_t(*sum)[SUMS];
   vg_status st;
 
   if (!n) return VG_OK;
-  m.cells = vg_calloc(n, sizeof *m.cells);
-  m.covered = vg_calloc(n, sizeof *m.covered);
-  sum = vg_calloc(2 * n, sizeof *sum);
-  st = m.cells && m.covered && sum
-       ? build_tree(&m, err)
-       : vg_fail_memory(err, "the lines across wakes");
+  m.sum = vg_calloc(n, sizeof *m.sum);
+  sum = vg_calloc(n, sizeof *sum);
+  st = m.sum && sum ? build_tree(&m, err)
+                    : vg_fail_memory(err, "the lines across wakes");
   if (st >= 0) st = vg_slices_each(s, threads, measure_slice, &m, err);
   VG_TRY(vg_comm_agree(c, st, err));
-  for (size_t i = 0; i < n; i++) {
-    sum[2 * i] = m.cells[i];
-    sum[2 * i + 1] = m.covered[i];
-  }
-  VG_TRY(vg_comm_sum(c, 2 * n, sum, err));
   for (size_t i = 0; i < n; i++)
-    probe[i].got = UNIT * (double)sum[2 * i + 1] >= COVERED
-                   ? (double)sum[2 * i] / (double)sum[2 * i + 1]
-                   : NAN;
+    for (int k = 0; k < SUMS; k++) sum[i][k] = m.sum[i][k];
+  VG_TRY(vg_comm_sum(c, SUMS * n, sum[0], err));
+  for (size_t i = 0; i < n; i++) take(sum[i], &probe[i]);
 done:
   vg_box_tree_release(&m.tree);
-  free(m.cells);
-  free(m.covered);
+  free(m.sum);
   free(sum);
   return st;
 }

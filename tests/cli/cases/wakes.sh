@@ -47,6 +47,8 @@ import json, sys
 one, long = (json.load(open(f"{f}/wing-sharp.report.json")) for f in sys.argv[1:])
 assert long["mesh"]["cells"] < 0.7 * one["mesh"]["cells"], long["mesh"]["cells"]
 for at in long["wakes"][0]["cells_across"]:
+    assert at["stretch_requested"] == 4, at
+    assert 3.4 < at["stretch_reached"] < 4.6, at
     assert at["lines"] == at["lines_measured"] > 0, at
     assert 0.85 * 5 < at["reached_mean"] < 1.4 * 5, at
 PY
