@@ -380,13 +380,17 @@ static void cells_along_lines(void **state)
 {
   struct vg_mesh m = make_box(8);
   struct vg_wake_probe p[4] = {
-    { .x = { { 0.31, 0.27, 0.01 }, { 0.31, 0.27, 0.99 } } },
+    { .x = { { 0.31, 0.27, 0.01 }, { 0.31, 0.27, 0.99 } },
+      .flow = { 1, 0, 0 } },
     { .x = { { 0.1, 0.57, 0.33 }, { 0.9, 0.57, 0.33 } } },
     { .x = { { 0.5, -0.9, 0.41 }, { 0.5, 0.4, 0.41 } } }, /* mostly outside */
     { .x = { { 0.52, -0.4, 0.41 }, { 0.52, 1, 0.41 } } }
   };
 
   (void)state;
+  for (size_t i = 0; i < m.n_point; i++) m.point[i][2] /= 4;
+  for (int i = 0; i < 4; i++)
+    for (int end = 0; end < 2; end++) p[i].x[end][2] /= 4;
   for (size_t parts = 1; parts <= 5; parts += 2) {
     struct cut c;
 
@@ -394,9 +398,65 @@ static void cells_along_lines(void **state)
     for (int i = 0; i < 4; i++) p[i].got = 7;
     assert_int_equal(vg_wake_measure(NULL, &c.s, 2, 4, p, NULL), VG_OK);
     assert_near(p[0].got, 0.98 * 8, 1e-5);
+    assert_near(p[0].stretch, 4, 1e-5);
+    assert_true(isnan(p[2].stretch));
     assert_near(p[1].got, 0.8 * 8, 1e-5);
     assert_true(isnan(p[2].got));
     assert_near(p[3].got, 1.4 * 8, 1e-5); /* extrapolated */
+    cut_release(&c);
+  }
+  vg_mesh_release(&m);
+}
+
+/* The box with each cube cut into two prisms, in slabs along z. */
+static struct vg_mesh make_prisms(int n)
+{
+  const uint32_t stride[3] = { 1, (uint32_t)n + 1,
+                               (uint32_t)((n + 1) * (n + 1)) };
+  struct vg_mesh m = make_box(n);
+
+  m.pri = calloc((size_t)(2 * n * n * n), sizeof *m.pri);
+  assert_non_null(m.pri);
+  for (int c = 0; c < n * n * n; c++) {
+    const uint32_t at = m.tet[6 * c][0];
+
+    for (int half = 0; half < 2; half++) {
+      uint32_t *v = m.pri[m.n_pri++];
+
+      v[0] = at;
+      v[1] = at + (half ? stride[0] + stride[1] : stride[0]);
+      v[2] = at + (half ? stride[1] : stride[0] + stride[1]);
+      for (int k = 0; k < 3; k++) v[k + 3] = v[k] + stride[2];
+    }
+  }
+  free(m.tet);
+  m.tet = NULL;
+  m.n_tet = 0;
+  return m;
+}
+
+/* Prisms count outside of layers, which are the first half of them here. */
+static void prisms_along_lines(void **state)
+{
+  struct vg_mesh m = make_prisms(8);
+  struct vg_wake_probe p[4] = {
+    { .x = { { 0.1, 0.57, 0.83 }, { 0.9, 0.57, 0.83 } } },
+    { .x = { { 0.31, 0.2, 0.6 }, { 0.31, 0.9, 0.6 } } },
+    { .x = { { 0.31, 0.27, 0.2 }, { 0.31, 0.27, 0.98 } } },
+    { .x = { { 0.31, 0.27, 0.1 }, { 0.31, 0.92, 0.3 } } } /* in layers */
+  };
+
+  (void)state;
+  for (size_t parts = 1; parts <= 5; parts += 2) {
+    struct cut c;
+
+    cut_make(&c, &m, parts, 0, NULL, parts);
+    c.s.n_layer_cell[VG_SLICE_PRI] = m.n_pri / 2;
+    assert_int_equal(vg_wake_measure(NULL, &c.s, 2, 4, p, NULL), VG_OK);
+    assert_near(p[0].got, 0.8 * 8, 1e-5);
+    assert_near(p[1].got, 0.7 * 8, 1e-5);
+    assert_near(p[2].got, 0.78 * 8, 1e-5); /* extrapolated */
+    assert_true(isnan(p[3].got));
     cut_release(&c);
   }
   vg_mesh_release(&m);
@@ -422,11 +482,17 @@ static void a_line_of_a_panel(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(chords_of_wings),   cmocka_unit_test(backwards),
-    cmocka_unit_test(concave),           cmocka_unit_test(thick_base),
-    cmocka_unit_test(panels_of_wings),   cmocka_unit_test(chord_that_jumps),
-    cmocka_unit_test(sheet_of_a_panel),  cmocka_unit_test(directions),
-    cmocka_unit_test(cells_along_lines), cmocka_unit_test(a_line_of_a_panel),
+    cmocka_unit_test(chords_of_wings),
+    cmocka_unit_test(backwards),
+    cmocka_unit_test(concave),
+    cmocka_unit_test(thick_base),
+    cmocka_unit_test(panels_of_wings),
+    cmocka_unit_test(chord_that_jumps),
+    cmocka_unit_test(sheet_of_a_panel),
+    cmocka_unit_test(directions),
+    cmocka_unit_test(cells_along_lines),
+    cmocka_unit_test(a_line_of_a_panel),
+    cmocka_unit_test(prisms_along_lines),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

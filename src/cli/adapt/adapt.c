@@ -20,7 +20,8 @@
 #include "run/input/input.h"
 
 #define RECORD "adapt.json"
-#define VERSION 1
+#define VERSION 2
+#define DIGEST "_digest" /* after the name of a file in the record */
 
 static const char *const step_names[VG_ADAPT_N] = { "metric", "mesh", "solve" };
 
@@ -60,28 +61,41 @@ static json_t *file_json(const char *path)
   return json_string(text);
 }
 
+/* The digests of all files of the project, whether they are options or were
+ * found next to the surface. */
+static void add_files(json_t *o, const struct vg_input_files *f)
+{
+  json_object_set_new(o, "surface" DIGEST, file_json(f->surface));
+  json_object_set_new(o, "deck" DIGEST, file_json(f->deck));
+  json_object_set_new(o, "mapbc" DIGEST, file_json(f->mapbc));
+  json_object_set_new(o, "tags" DIGEST, file_json(f->tags));
+  json_object_set_new(o, "bc" DIGEST, file_json(f->aflr));
+  json_object_set_new(o, "d3m" DIGEST, file_json(f->d3m));
+  json_object_set_new(o, "front" DIGEST, file_json(f->front));
+}
+
 /* Everything that decides the results, except for the number of cycles: more
  * cycles continue a loop. */
 static json_t *settings_json(const struct vg_adapt_options *o,
-                             const char *surface)
+                             const struct vg_input_files *f)
 {
   const struct vg_adapt_row *r = &o->row;
-  json_t *extra = json_array();
+  json_t *extra = json_array(), *all;
 
   for (int i = 0; i < o->n_extra; i++)
     json_array_append_new(extra, vg_text_json(o->extra[i]));
-  return json_pack("{s:i s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o}",
-                   "version", VERSION, "project", vg_text_json(o->project),
-                   "surface_digest", file_json(surface), "deck",
-                   vg_text_json(o->deck ? o->deck : ""), "deck_digest",
-                   file_json(o->deck), "solver", vg_text_json(r->solver),
-                   "field", vg_text_json(r->field), "norm",
-                   vg_text_json(r->norm), "cells", real_json(r->cells),
-                   "cells_ratio", real_json(r->cells_ratio), "growth",
-                   real_json(r->growth), "edge_bounds",
-                   json_pack("[o,o]", real_json(r->h_min), real_json(r->h_max)),
-                   "aspect_max", real_json(r->aspect_max), "mesh_options",
-                   extra);
+  all = json_pack("{s:i s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o s:o}",
+                  "version", VERSION, "project", vg_text_json(o->project),
+                  "deck", vg_text_json(f->deck), "solver",
+                  vg_text_json(r->solver), "field", vg_text_json(r->field),
+                  "norm", vg_text_json(r->norm), "cells", real_json(r->cells),
+                  "cells_ratio", real_json(r->cells_ratio), "growth",
+                  real_json(r->growth), "edge_bounds",
+                  json_pack("[o,o]", real_json(r->h_min), real_json(r->h_max)),
+                  "aspect_max", real_json(r->aspect_max), "mesh_options",
+                  extra);
+  if (all) add_files(all, f);
+  return all;
 }
 
 /* As vanguard metric checks its options, but before the first mesh. */
@@ -269,12 +283,12 @@ static const char *changed(const json_t *now, const json_t *then)
   return NULL;
 }
 
-/* A digest belongs to a file. */
-static const char *words_of(const char *name)
+/* Length of the name of a setting; a digest has the name of its file. */
+static int name_length(const char *name)
 {
-  return !strcmp(name, "deck_digest")    ? "deck"
-       : !strcmp(name, "surface_digest") ? "surface"
-                                         : name;
+  const size_t n = strlen(name);
+
+  return (int)(vg_text_ends(name, DIGEST) ? n - strlen(DIGEST) : n);
 }
 
 static vg_status take_record(struct vg_adapt *a, struct vg_error *err)
@@ -299,9 +313,9 @@ static vg_status take_record(struct vg_adapt *a, struct vg_error *err)
                  path, why.line, why.text);
   else if (other)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s is the record of a loop with another %s; give another "
+                 "%s is the record of a loop with another %.*s; give another "
                  "folder by --out, or remove this one",
-                 path, words_of(other));
+                 path, name_length(other), other);
   for (size_t i = 0; i < a->n && st >= 0; i++)
     if (!take_cycle(json_array_get(json_object_get(o, "cycles"), i),
                     &a->cycle[i]))
@@ -356,27 +370,26 @@ static vg_status make_cycles(struct vg_adapt *a, struct vg_error *err)
   return st;
 }
 
-static vg_status find_stem(struct vg_adapt *a, char **surface,
-                           struct vg_error *err)
+/* The stem of the meshes, and the settings with the files as they are now. */
+static vg_status find_files(struct vg_adapt *a, struct vg_error *err)
 {
   struct vg_problem p = VG_PROBLEM_INIT;
-  vg_status st = vg_input_find(a->o->project, a->o->deck, &p.read.files, err);
+  const struct vg_input_files *f = &p.read.files;
+  const char *slash;
+  vg_status st;
 
-  if (st >= 0) {
-    const struct vg_input_files *f = &p.read.files;
-    const char *slash = strrchr(f->stem, '/');
-
-    if (*a->o->row.field && f->surface && vg_text_ends(f->surface, ".dat"))
-      st = vg_fail(err, VG_ERR_INPUT,
+  VG_TRY(vg_input_find(a->o->project, a->o->deck, &p.read.files, err));
+  if (*a->o->row.field && f->is_section)
+    VG_TRY(vg_fail(err, VG_ERR_INPUT,
                    "%s is a plane section, on which metrics do not act: leave "
                    "out the field, so that only first heights follow the "
                    "solution",
-                   f->surface);
-    a->stem = strdup(slash ? slash + 1 : f->stem);
-    *surface = strdup(f->surface ? f->surface : f->front ? f->front : f->d3m);
-    if (st >= 0 && (!a->stem || !*surface))
-      st = vg_fail_memory(err, "a file name");
-  }
+                   f->surface));
+  slash = strrchr(f->stem, '/');
+  a->stem = strdup(slash ? slash + 1 : f->stem);
+  a->settings = settings_json(a->o, f);
+  if (!a->stem || !a->settings) st = vg_fail_memory(err, "the settings");
+done:
   vg_problem_release(&p);
   return st;
 }
@@ -384,21 +397,17 @@ static vg_status find_stem(struct vg_adapt *a, char **surface,
 vg_status vg_adapt_open(const struct vg_adapt_options *o, struct vg_adapt *a,
                         struct vg_error *err)
 {
-  char *surface = NULL;
   vg_status st;
 
   *a = (struct vg_adapt){ .o = o };
   VG_TRY(check_options(o, err));
-  VG_TRY(find_stem(a, &surface, err));
+  VG_TRY(find_files(a, err));
   VG_TRY(vg_make_folder(o->dir, err));
   VG_TRY(absolute(o->dir, &a->dir, err));
   VG_TRY(find_home(a, err));
   VG_TRY(make_cycles(a, err));
-  a->settings = settings_json(o, surface);
-  if (!a->settings) VG_TRY(vg_fail_memory(err, "the settings"));
   st = take_record(a, err);
 done:
-  free(surface);
   return st;
 }
 

@@ -47,7 +47,7 @@ struct vg_adapt_cycle {
   double seconds[VG_ADAPT_N];
   double requested; /* cells outside of layers; NAN: no metric */
   int attempt;      /* the metric that is used, from 1 */
-  int exit_status;  /* of the mesher: VG_EXIT_LIMIT if a limit is not met */
+  int exit_status;  /* of the mesher: of a mesh, not 0 if a limit is not met */
   double cells, points, field_cells, angle_min; /* NAN: not known */
   size_t n_output;
   struct vg_adapt_output {

@@ -32,7 +32,7 @@ enum { N_WALL = sizeof wall_names / sizeof *wall_names };
 static vg_status run(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                      enum vg_adapt_step step, const struct vg_words *w,
                      const char *name, const char *out, int *status,
-                     char note[256], struct vg_error *err)
+                     char note[VG_FAILURE_NOTE], struct vg_error *err)
 {
   char file[32], *log = NULL;
   double wall = 0;
@@ -45,7 +45,7 @@ static vg_status run(const struct vg_adapt *a, struct vg_adapt_cycle *c,
   VG_TRY(vg_words_run(w, step == VG_ADAPT_SOLVE ? a->home : NULL, log, out,
                       status, &wall, err));
   c->seconds[step] += wall;
-  if (*status) vg_failure_note(log, note, 256);
+  if (*status) vg_failure_note(log, note, VG_FAILURE_NOTE);
   if (vg_display_interrupted())
     st = vg_fail(err, VG_ERR_STOPPED,
                  "interrupted in cycle %d; the same command continues",
@@ -181,7 +181,7 @@ static vg_status make_metric(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                              struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
-  char note[256] = "";
+  char note[VG_FAILURE_NOTE] = "";
   int status;
   vg_status st;
 
@@ -266,7 +266,8 @@ static int is_geometry(const char *answer)
 
 /* *again: another metric may help. */
 static vg_status try_mesh(const struct vg_adapt *a, struct vg_adapt_cycle *c,
-                          int *again, char note[256], struct vg_error *err)
+                          int *again, char note[VG_FAILURE_NOTE],
+                          struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
   char *answer = NULL;
@@ -290,7 +291,7 @@ done:
 static vg_status make_mesh(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                            struct vg_error *err)
 {
-  char note[256] = "";
+  char note[VG_FAILURE_NOTE] = "";
   int again = 0;
   vg_status st;
 
@@ -440,7 +441,7 @@ static vg_status solve(const struct vg_adapt *a, struct vg_adapt_cycle *c,
                        struct vg_error *err)
 {
   struct vg_words w = VG_WORDS_INIT;
-  char note[256] = "";
+  char note[VG_FAILURE_NOTE] = "";
   int status;
   vg_status st;
 

@@ -52,7 +52,7 @@ int vg_adapt_note(const struct vg_adapt *a, const struct vg_adapt_cycle *c,
   double growth, aspect_max;
 
   *note = 0;
-  if (k == 0 && c->exit_status)
+  if (k == 0 && c->exit_status && c->is_done[VG_ADAPT_MESH])
     snprintf(note, VG_ADAPT_NOTE,
              "the mesh of cycle %d does not meet a limit; its report says "
              "which",

@@ -178,7 +178,7 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
   if (st >= 0 && vg_settings_unit(&p.asked))
     vg_settings_convert(&p.asked, vg_settings_unit(&p.asked));
-  if (st >= 0 && *p.read.files.surface)
+  if (st >= 0 && p.read.files.surface && *p.read.files.surface)
     o->is_plane |= vg_problem_is_section(&p);
   o->scale = p.asked.scale;
   o->reynolds = p.asked.layer.reynolds;

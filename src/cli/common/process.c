@@ -213,7 +213,8 @@ void vg_failure_note(const char *path, char *note, size_t size)
     if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
     if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
     kept = ours ? OURS : kept == RULE ? FRAMED : kept;
-    snprintf(note, size, "%s", line + ours);
+    if ((size_t)snprintf(note, size, "%s", line + ours) >= size)
+      strcpy(note + size - 4, "...");
   }
   free(line);
   if (f) fclose(f);

@@ -54,10 +54,14 @@ vg_status vg_words_run(const struct vg_words *w, const char *dir,
 /** Path of this program; the caller frees it. NULL: out of memory. */
 char *vg_own_path(void);
 
+/* Enough for all but the longest messages. */
+#define VG_FAILURE_NOTE 800
+
 /** Extract the reason of a failure from the output of a run in the file at
  * `path`: the last line that vanguard wrote; else the line after the first
  * horizontal rule, with which launchers frame their messages; else the last
- * line; "see PATH" if the file is empty. note[size]. */
+ * line; "see PATH" if the file is empty. A line that is too long
+ * ends with "...". note[size], size > 3. */
 void vg_failure_note(const char *path, char *note, size_t size);
 
 #endif

@@ -18,6 +18,7 @@ static void row(struct page *p, const struct vg_wake_count *c, size_t wake)
   cell(p, c->asked);
   cell(p, c->mean);
   cell(p, c->least);
+  cell(p, c->stretch);
   vg_page_format(p, "<td>%zu of %zu</td></tr>\n", c->n_measured, c->n_line);
 }
 
@@ -29,13 +30,16 @@ void vg_html_wakes(struct page *p)
   if (!n) return;
   vg_page_section(p, "wakes", "Wakes");
   vg_page_markup(
-    p, "<p>Cells across each wake, in edge lengths of the cells, on lines "
-       "across it at distances in chords behind the trailing edge. Lines that "
-       "are mostly in walls are not measured.</p>\n"
-       "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">Wake</th>"
-       "<th scope=\"col\">Chords</th><th scope=\"col\">Requested</th>"
-       "<th scope=\"col\">Reached, mean</th><th scope=\"col\">Least</th>"
-       "<th scope=\"col\">Lines</th></tr></thead>\n<tbody>");
+    p,
+    "<p>Cells across each wake, in edge lengths of the cells, on lines "
+    "across it at distances in chords behind the trailing edge. Lines that "
+    "are mostly in walls or layers are not measured. The stretch is the edge "
+    "length along the stream over that across the wake.</p>\n"
+    "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">Wake</th>"
+    "<th scope=\"col\">Chords</th><th scope=\"col\">Requested</th>"
+    "<th scope=\"col\">Reached, mean</th><th scope=\"col\">Least</th>"
+    "<th scope=\"col\">Stretch</th>"
+    "<th scope=\"col\">Lines</th></tr></thead>\n<tbody>");
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < VG_WAKE_STATIONS; k++) {
       const struct vg_wake_count c = vg_report_wake_count(r->n_probe, r->probe,

@@ -10,6 +10,7 @@
 #include <sys/types.h>
 
 #include "base/status.h"
+#include "cli/common/process.h"
 #include "cli/serve/tell.h"
 #include "run/settings/settings.h"
 
@@ -27,7 +28,7 @@ struct vg_look_process {
   enum vg_look_state state;
   char *dir;
   pid_t pid;
-  char note[512];
+  char note[VG_FAILURE_NOTE];
 };
 
 struct vg_looks {

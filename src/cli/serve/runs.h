@@ -17,6 +17,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
+#include "cli/common/process.h"
 #include "cli/serve/portal.h"
 #include "cli/serve/tell.h"
 
@@ -56,7 +57,7 @@ struct vg_serve_run {
   int is_child;                    /* 1: child of this process (waitpid) */
   int exit_status;                 /* 128 + n: ended by signal n; -1: none */
   int64_t created, started, ended; /* seconds since 1970; 0: not yet */
-  char note[256];
+  char note[VG_FAILURE_NOTE + 100];
   /* Not in the record: */
   struct vg_tell tell;
   int64_t output_size; /* size of output.log when `tell` was read */

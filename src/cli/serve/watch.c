@@ -27,21 +27,21 @@ static int logged_status(const struct vg_serve_run *run)
 /* Set the note to the reason of the failure from the output of the run. */
 static void note_failure(struct vg_serve_run *run)
 {
-  char path[4096], text[256];
+  char path[4096], text[VG_FAILURE_NOTE];
 
   vg_failure_note(vg_run_path(run, "output.log", path), text, sizeof text);
   if (!strncmp(text, "see /", 5)) snprintf(text, sizeof text, "(no output)");
   if (run->exit_status > 128)
     snprintf(run->note, sizeof run->note,
              "ended by signal %d (%s); last "
-             "line: %.180s",
+             "line: %s",
              run->exit_status - 128, strsignal(run->exit_status - 128), text);
   else if (run->exit_status < 0)
     snprintf(run->note, sizeof run->note,
              "ended without an exit status: "
-             "killed, or the machine failed; last line: %.160s",
+             "killed, or the machine failed; last line: %s",
              text);
-  else snprintf(run->note, sizeof run->note, "%.250s", text);
+  else snprintf(run->note, sizeof run->note, "%s", text);
 }
 
 void vg_run_ended(struct vg_serve_run *run, int exit_status)

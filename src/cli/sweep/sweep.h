@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "cli/common/process.h"
 #include "cli/plot/timeline.h"
 #include "partition/advance/ways.h"
 #include "run/common/ranges.h"
@@ -94,9 +95,9 @@ struct vg_sweep_case {
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;
-  int exit_status; /* 128 + n: ended by signal n */
-  char note[256];  /* why it failed */
-  double wall;     /* seconds from start to exit */
+  int exit_status;            /* 128 + n: ended by signal n */
+  char note[VG_FAILURE_NOTE]; /* why it failed */
+  double wall;                /* seconds from start to exit */
   int has_timeline;
   struct vg_timeline t;
   double angle_min, peak_memory; /* NAN if not in the report */

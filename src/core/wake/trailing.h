@@ -43,8 +43,9 @@ struct vg_trailing {
 /** Find the trailing edges of the triangles of m.
  *
  * @param m           points with the same coordinates must be merged;
- *                    neighbours may disagree in orientation. Quadrilaterals
- *                    are ignored
+ *                    neighbours may disagree in orientation. No inner
+ *                    surfaces: an edge of three triangles does not count.
+ *                    Quadrilaterals are ignored
  * @param is_body     [n_patch] 1: the patch belongs to the body; 0: farfield
  *                    or symmetry plane
  * @param is_internal 1: the fluid is inside of all shells, if all patches

@@ -384,6 +384,7 @@ int vg_wake_probe(const struct vg_wake *w, const struct vg_wake_panel *p,
     out->x[1][k] = mid + half * normal[k];
   }
   out->asked = 2 * half / (scale * size_at(w, s) * chord);
-  out->got = NAN;
+  out->got = out->stretch = NAN;
+  memcpy(out->flow, flow, sizeof out->flow);
   return 1;
 }

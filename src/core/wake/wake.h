@@ -73,8 +73,11 @@ struct vg_wake_probe {
   uint64_t wake;    /* number of the wake, of the caller */
   uint64_t station; /* of the caller */
   double x[2][3];   /* its ends, on the limits of the wake */
+  double flow[3];   /* unit vector along the stream */
   double asked;     /* requested number of cells along it */
   double got;       /* number of cells along it; NAN: not measured */
+  double stretch;   /* edge lengths along the stream over those along the line;
+                       NAN: not measured */
 };
 
 /** Line across the wake of a panel at s chords behind the middle of its
@@ -86,13 +89,15 @@ int vg_wake_probe(const struct vg_wake *w, const struct vg_wake_panel *p,
 struct vg_comm;
 struct vg_slices;
 
-/** Count the cells along probes: a tetrahedron counts with the length of the
- * probe within it, in edge lengths of the tetrahedron along the probe (of the
- * metric in which it is regular). Numbers are extrapolated to whole probes.
- * Those that have less than half of their length in tetrahedra, because they
- * cross walls, layers of other cells or the boundary, are not measured.
- * Collective; the probes are the same on all ranks, also afterwards.
- * VG_ERR_MEMORY. */
+/** Count the cells along probes: a tetrahedron, or a prism outside of layers,
+ * counts with the length of the probe within it, in edge lengths of the cell
+ * along the probe (of the metric in which it is regular). Prisms outside of
+ * layers are those of plane sections: parallelepipeds cut in half. Numbers are
+ * extrapolated to whole probes. `stretch` is the quotient of the numbers for
+ * vectors of the same length along the probe and along its flow. Those that
+ * have less than half of their length in such cells, because they cross walls,
+ * layers of other cells or the boundary, are not measured. Collective; the
+ * probes are the same on all ranks, also afterwards. VG_ERR_MEMORY. */
 vg_status vg_wake_measure(struct vg_comm *c, const struct vg_slices *s,
                           int threads, size_t n, struct vg_wake_probe *probe,
                           struct vg_error *err);

@@ -38,14 +38,52 @@ struct body {
   double flow[VG_WAKE_ANGLES * VG_WAKE_ANGLES][3];
 };
 
+/* Zone interfaces are walls of a body where a zone is solid or has no cells. */
+static int has_bodies_as_zones(const struct vg_settings *s)
+{
+  for (size_t i = 0; i < s->n_zone; i++)
+    if (s->zone[i].kind == VG_ZONE_SOLID || s->zone[i].mesh == VG_ANSWER_NO)
+      return 1;
+  return 0;
+}
+
+/* Inner surfaces are no sides of the body, also where they are attached to its
+ * trailing edge. */
+static vg_status drop_inner(struct body *b, struct vg_error *err)
+{
+  const struct vg_settings *s = &b->read->settings;
+  const int keeps_interfaces = has_bodies_as_zones(s);
+  struct vg_mesh *m = &b->m;
+  uint8_t *role = vg_alloc(m->n_patch, 1);
+  size_t n = 0;
+  vg_status st;
+
+  if (!role) return vg_fail_memory(err, "the patches");
+  VG_TRY(vg_inner_roles(s, m, role, err));
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const uint32_t patch = m->tri_patch[t];
+
+    if (role[patch] == VG_PATCH_BAFFLE || role[patch] == VG_PATCH_SHEET ||
+        (role[patch] == VG_PATCH_INTERFACE && !keeps_interfaces))
+      continue;
+    memmove(m->tri[n], m->tri[t], sizeof *m->tri);
+    m->tri_patch[n++] = patch;
+  }
+  m->n_tri = n;
+done:
+  free(role);
+  return st;
+}
+
 static vg_status take_body(struct body *b, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->read->surface;
   vg_status st;
 
   VG_TRY(vg_mesh_copy(&b->m, m, err));
-  vg_mesh_keep_boundary(&b->m);
   VG_TRY(vg_split_quads(&b->m, err));
+  VG_TRY(drop_inner(b, err));
+  vg_mesh_keep_boundary(&b->m);
   VG_TRY(vg_surface_merge_points(&b->m, err));
   b->is_body = vg_alloc(m->n_patch, 1);
   b->on = vg_alloc(m->n_patch, 1);

@@ -102,6 +102,7 @@ struct vg_wake_count {
   double chords; /* Distance behind the trailing edge. */
   size_t n_line, n_measured;
   double asked, mean, least;
+  double stretch; /* Mean edge length along the stream over that across. */
 };
 struct vg_wake_count vg_report_wake_count(size_t n,
                                           const struct vg_wake_probe *probe,

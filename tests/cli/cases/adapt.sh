@@ -60,6 +60,32 @@ vanguard adapt box.deck -o a --field r
 exits 1
 says err "is the record of a loop with another field"
 
+# Files that are found next to the surface belong to the loop, too.
+cp box.lb8.ugrid near.lb8.ugrid
+printf 'near\n\nhmax\n0.3\n' >near.deck
+near() { # CYCLES
+  vanguard adapt -q -p near -o n --solver ./solve.sh --field q --cells 2000 \
+    --cycles "$1" -- --write mesh,b8.ugrid
+}
+near 1
+exits 0
+cp near.deck near.deck.first
+printf 'near\n\nhmax\n0.25\n' >near.deck
+for cycles in 1 2; do
+  near $cycles
+  exits 1
+  says err "is the record of a loop with another deck; give another folder"
+done
+cp near.deck.first near.deck
+cp box.mapbc near.mapbc
+near 2
+exits 1
+says err "is the record of a loop with another mapbc; give another folder"
+absent n/cycle-2
+rm near.mapbc
+near 2
+exits 0
+
 # A loop that fails, and one that is killed at any step, end with the same
 # meshes.
 touch fail
@@ -108,15 +134,20 @@ case "\$*" in
   *cycle-2/metric.vtu*--out*|*cycle-2/metric-2.vtu*--out*) ;;
   mesh*cycle-2/metric.vtu*|mesh*cycle-2/metric-2.vtu*)
     echo "{\"error_kind\": \"\$KIND\"}"
-    echo "vanguard: no mesh here" >&2; exit 1 ;;
+    echo "vanguard: no mesh here\$MORE" >&2; exit 1 ;;
 esac
 exec "$program" "\$@"
 END
 chmod +x stand-in
-export KIND=memory
+export KIND=memory MORE
+MORE="; $(printf 'a patch, %.0s' $(seq 60))and the remedy"
 vanguard adapt box.deck -o c --program ./stand-in
 exits 1
-says err "cycle 2: no mesh: no mesh here; the log is"
+says err "no mesh: no mesh here; a patch, a patch"
+says err "a patch, and the remedy; the log is $PWD/c/cycle-2/mesh.log"
+lacks out "note:" # there is no mesh that could miss a limit
+lacks c/adapt.json "does not meet a limit"
+MORE=""
 export KIND=geometry
 vanguard adapt box.deck -o c --program ./stand-in
 exits 0

@@ -47,6 +47,8 @@ import json, sys
 one, long = (json.load(open(f"{f}/wing-sharp.report.json")) for f in sys.argv[1:])
 assert long["mesh"]["cells"] < 0.7 * one["mesh"]["cells"], long["mesh"]["cells"]
 for at in long["wakes"][0]["cells_across"]:
+    assert at["stretch_requested"] == 4, at
+    assert 3.4 < at["stretch_reached"] < 4.6, at
     assert at["lines"] == at["lines_measured"] > 0, at
     assert 0.85 * 5 < at["reached_mean"] < 1.4 * 5, at
 PY
@@ -106,6 +108,60 @@ vanguard mesh -q -p w/wing-sharp --deck w/s.deck --layers no \
   --remesh-surface yes --out trail
 exits 1
 says err "patch farfield has no trailing edge for the stream along x"
+
+# Inner surfaces attached to the trailing edge of a wing, which has the span 2 and
+# a sweep of 0.5, do not hide it.
+python3 - >attached.stl <<'PY'
+n, spans = 4, 4
+def wing(i, j, side):
+    t = 0.06 * (1 - abs(2 * i / n - 1))
+    return i / n + j / spans, 2 * j / spans, side * t
+def wake(i, j):
+    return 1 + i / n + j / spans, 2 * j / spans, 0.1 * (i / n) ** 2
+def quad(a, b, c, d):
+    return [t for t in ((a, b, c), (a, c, d)) if len(set(t)) == 3]
+body, sheet = [], []
+for j in range(spans):
+    for i in range(n):
+        for side in 1, -1:
+            q = quad(wing(i, j, side), wing(i + 1, j, side),
+                     wing(i + 1, j + 1, side), wing(i, j + 1, side))
+            body += [t[::side] for t in q]
+        sheet += quad(wake(i, j), wake(i + 1, j), wake(i + 1, j + 1),
+                      wake(i, j + 1))
+for i in range(n):
+    body += quad(wing(i, spans, 1), wing(i + 1, spans, 1),
+                 wing(i + 1, spans, -1), wing(i, spans, -1))
+for name, faces in ("wing", body), ("wake", sheet):
+    print("solid", name)
+    for t in faces:
+        print("facet normal 0 0 0\nouter loop")
+        for x in t:
+            print("vertex", *x)
+        print("endloop\nendfacet")
+    print("endsolid", name)
+PY
+for role in sheets baffles; do
+  vanguard mesh -q -p attached.stl --$role wake --wakes auto --layers no \
+    --farfield-lengths 2 --out attached_$role
+  exits 0
+  says out "trailing edges of 2.236 in total, with chords of 1 to 1,"
+  says attached_$role/attached.report.json '"valid": true'
+done
+
+# Cells across the wake of a section, with triangles and with quadrilaterals in
+# its layers.
+vanguard demo aerofoil --out a
+for cells in tets mixed; do
+  vanguard mesh -q -p a/aerofoil --wakes auto --cells $cells --out a/$cells
+  exits 0
+  python3 - a/$cells/aerofoil.report.json <<'PY' || fail "cells in the section"
+import json, sys
+for at in json.load(open(sys.argv[1]))["wakes"][0]["cells_across"]:
+    assert at["lines"] == at["lines_measured"] == 1, at
+    assert 0.85 * 5 < at["reached_mean"] < 1.4 * 5, at
+PY
+done
 
 # A ball has none.
 vanguard demo sphere --cells 20000 --out s
