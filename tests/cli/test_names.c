@@ -337,7 +337,9 @@ static void decks_suggest(void **state)
   (void)state;
   expect_refused("T\nnum_layers\n3\n", "did you mean 'layer_count'?");
   expect_refused("T\nfarfield_lengths\n3\n",
-                 "did you mean 'farfield.lengths'?");
+                 "did you mean the column lengths of the table farfield?");
+  expect_refused("T\nfarfield.lengths\n3\n",
+                 "did you mean the column lengths of the table farfield?");
   expect_refused("T\nsources\ntype x y\n", "did you mean 'kind'?");
   expect_refused("T\nrepair\ntrue\n", "did you mean 'yes'?");
 }
