@@ -43,6 +43,14 @@ static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
   return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
+/** Ascending order of keys of edges, for qsort and bsearch. */
+static inline int vg_compare_edge_keys(const void *a, const void *b)
+{
+  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+
+  return (p > q) - (p < q);
+}
+
 /* Key of a triangle, independent of the order of its vertices. */
 struct vg_tri_key {
   uint64_t low;  /* Lowest vertex << 32 | middle vertex. */

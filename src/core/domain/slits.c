@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
+#include "base/tri_key.h"
 
 struct work {
   struct vg_mesh *m;
@@ -55,13 +56,6 @@ static vg_status find_points(struct work *w, struct vg_error *err)
   return VG_OK;
 }
 
-static int by_key(const void *a, const void *b)
-{
-  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-
-  return (p > q) - (p < q);
-}
-
 static vg_status find_edges(struct work *w, struct vg_error *err)
 {
   size_t n = 0;
@@ -78,11 +72,10 @@ static vg_status find_edges(struct work *w, struct vg_error *err)
     for (int k = 0; k < 3; k++) {
       const uint32_t a = v[k], b = v[(k + 1) % 3];
 
-      if (!w->on[a] || !w->on[b]) continue;
-      w->edge[n++] = (uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a);
+      if (w->on[a] && w->on[b]) w->edge[n++] = vg_edge_key(a, b);
     }
   }
-  if (n) qsort(w->edge, n, sizeof *w->edge, by_key);
+  if (n) qsort(w->edge, n, sizeof *w->edge, vg_compare_edge_keys);
   for (size_t i = 0; i < n; i++)
     if (!w->n_edge || w->edge[w->n_edge - 1] != w->edge[i])
       w->edge[w->n_edge++] = w->edge[i];
@@ -148,18 +141,15 @@ static vg_status add_edges(struct work *w, struct vg_error *err)
   vg_status st = VG_OK;
 
   if (!has) return vg_fail_memory(err, "the symmetry plane");
-  for (size_t i = 0; i < n; i++) {
-    const uint32_t a = w->border->edge[i][0], b = w->border->edge[i][1];
-
-    has[i] = (uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a);
-  }
-  if (n) qsort(has, n, sizeof *has, by_key);
+  for (size_t i = 0; i < n; i++)
+    has[i] = vg_edge_key(w->border->edge[i][0], w->border->edge[i][1]);
+  if (n) qsort(has, n, sizeof *has, vg_compare_edge_keys);
   for (size_t i = 0; i < w->n_edge && st >= 0; i++) {
     const uint32_t a = w->point[w->edge[i] >> 32];
     const uint32_t b = w->point[(uint32_t)w->edge[i]];
-    const uint64_t key = (uint64_t)(a < b ? a : b) << 32 | (a < b ? b : a);
+    const uint64_t key = vg_edge_key(a, b);
 
-    if (n && bsearch(&key, has, n, sizeof key, by_key)) continue;
+    if (n && bsearch(&key, has, n, sizeof key, vg_compare_edge_keys)) continue;
     st = vg_border_add(w->border, a, b, err);
     if (st >= 0) st = vg_border_add(w->border, b, a, err);
   }

@@ -18,13 +18,6 @@
 #include "core/mesh/sheets.h"
 #include "layers/slide/slide_parts.h"
 
-static int compare_key(const void *a, const void *b)
-{
-  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-
-  return (p > q) - (p < q);
-}
-
 vg_status vg_slide_hold(struct vg_slide_work *w)
 {
   const struct vg_mesh *m = w->m;
@@ -44,7 +37,7 @@ vg_status vg_slide_hold(struct vg_slide_work *w)
       w->held[a] = 1;
       w->held_edge[w->n_held++] = vg_slide_key(a, b);
     }
-  qsort(w->held_edge, n, sizeof *w->held_edge, compare_key);
+  qsort(w->held_edge, n, sizeof *w->held_edge, vg_compare_edge_keys);
   return VG_OK;
 }
 
@@ -55,8 +48,8 @@ int vg_slide_is_held(const struct vg_slide_work *w, uint32_t a, uint32_t b)
 
   if (!w->held || a >= n || b >= n || !w->held[a] || !w->held[b]) return 0;
   key = vg_slide_key(a, b);
-  return bsearch(&key, w->held_edge, w->n_held, sizeof key, compare_key) !=
-         NULL;
+  return bsearch(&key, w->held_edge, w->n_held, sizeof key,
+                 vg_compare_edge_keys) != NULL;
 }
 
 /* New triangles by the first points of their half-edges. */

@@ -474,13 +474,6 @@ static void find_runs(const struct vg_slide_work *w, uint8_t *runs)
   for (size_t i = 0; i < c->n_column; i++) runs[i] = runs[i] == 3;
 }
 
-static int compare(const void *a, const void *b)
-{
-  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-
-  return (p > q) - (p < q);
-}
-
 /* Whether chain d is the image of c by pair p. */
 static int is_chain_image(const struct vg_slide_work *w, size_t p,
                           const struct chain *c, const struct chain *d)
@@ -614,7 +607,8 @@ vg_status vg_slide_curves(struct vg_slide_work *w)
     VG_TRY(follow(w, col->root, col->slide, &c));
     if (c.n && !is_copied(w, &c)) VG_TRY(run(w, &c, i, runs));
   }
-  if (w->n_gone) qsort(w->gone, w->n_gone, sizeof *w->gone, compare);
+  if (w->n_gone)
+    qsort(w->gone, w->n_gone, sizeof *w->gone, vg_compare_edge_keys);
 done:
   free(runs);
   free(c.v);

@@ -10,16 +10,9 @@
 #include "core/geometry/predicates.h"
 #include "layers/slide/slide_parts.h"
 
-static int compare_key(const void *a, const void *b)
-{
-  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-
-  return (p > q) - (p < q);
-}
-
 static int has_key(const uint64_t *key, size_t n, uint64_t k)
 {
-  return n && bsearch(&k, key, n, sizeof *key, compare_key) != NULL;
+  return n && bsearch(&k, key, n, sizeof *key, vg_compare_edge_keys) != NULL;
 }
 
 static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
@@ -149,7 +142,7 @@ vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
     border[i] = (uint64_t)w->c->column[r[0]].root << 32 |
                 w->c->column[r[1]].root;
   }
-  qsort(border, n_border, sizeof *border, compare_key);
+  qsort(border, n_border, sizeof *border, vg_compare_edge_keys);
   VG_TRY(former_edges(w, s, border, n_border, out));
   VG_TRY(new_edges(w, s, out));
   VG_TRY(check_closed(w, s, out, &is_closed));

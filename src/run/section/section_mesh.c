@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "run/section/section_surface.h"
 
 enum { SYMMETRY_X = 6661 }; /* FUN3D's condition; y and z follow. */
@@ -354,13 +355,6 @@ void vg_section_mesh_release(struct vg_section_mesh *m)
   m->id = m->top = NULL;
 }
 
-static int by_key(const void *a, const void *b)
-{
-  const uint64_t *p = a, *q = b;
-
-  return (*p > *q) - (*p < *q);
-}
-
 /* Faces of the field without another cell of it: all in both planes, and the
  * edges of its triangles that occur once. */
 static vg_status count_front(struct vg_section_mesh *m, struct vg_error *err)
@@ -372,11 +366,10 @@ static vg_status count_front(struct vg_section_mesh *m, struct vg_error *err)
   if (!key) return vg_fail_memory(err, "the mesh in the plane");
   for (size_t i = 0; i < 3 * n_tri; i++) {
     const uint32_t *t = p->tri[p->n_layer_tri + i / 3];
-    const uint64_t a = t[i % 3], b = t[(i + 1) % 3];
 
-    key[i] = a < b ? a << 32 | b : b << 32 | a;
+    key[i] = vg_edge_key(t[i % 3], t[(i + 1) % 3]);
   }
-  if (n_tri) qsort(key, 3 * n_tri, sizeof *key, by_key);
+  if (n_tri) qsort(key, 3 * n_tri, sizeof *key, vg_compare_edge_keys);
   m->n_front = 2 * n_tri;
   for (size_t i = 0; i < 3 * n_tri;) {
     const size_t n = i + 1 < 3 * n_tri && key[i + 1] == key[i] ? 2 : 1;

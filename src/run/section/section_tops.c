@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "run/section/section_mesh.h"
 #include "run/section/section_surface.h"
 
@@ -18,11 +19,6 @@ static int by_key(const void *a, const void *b)
   const struct side *p = a, *q = b;
 
   return (p->key > q->key) - (p->key < q->key);
-}
-
-static uint64_t key_of(uint64_t a, uint64_t b)
-{
-  return a < b ? a << 32 | b : b << 32 | a;
 }
 
 static double area_of(const struct vg_plane_mesh *m, const uint32_t *v, int n)
@@ -43,7 +39,8 @@ static void add_sides(const struct vg_plane_mesh *m, const uint32_t *v, int n,
   const double area = area_of(m, v, n);
 
   for (int k = 0; k < n; k++)
-    side[(*n_side)++] = (struct side){ key_of(v[k], v[(k + 1) % n]), area };
+    side[(*n_side)++] = (struct side){ vg_edge_key(v[k], v[(k + 1) % n]),
+                                       area };
 }
 
 /* Ratio across the edge with this key, which has a layer cell and a cell of the
@@ -87,7 +84,8 @@ vg_status vg_section_tops(const struct vg_mesh *slab,
 
     if (c->border_patch[i] == back && c->column[a].root != c->column[b].root &&
         c->column[a].n + c->column[b].n > 0)
-      of_edge[c->column[a].root] = ratio_at(side, n, key_of(top[a], top[b]));
+      of_edge[c->column[a].root] = ratio_at(side, n,
+                                            vg_edge_key(top[a], top[b]));
   }
   /* Triangles 2 k and 2 k + 1 of a strip are on the edge from point k. */
   for (size_t f = 0; f < c->n_face; f++)
