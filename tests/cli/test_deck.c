@@ -156,9 +156,8 @@ static void everything_survives_a_round_trip(void **state)
                                     .patch_name = "wing *",
                                     .alpha = "0, 2.5,-4",
                                     .beta = "1" };
-  struct vg_surface_row surface = {
-    VG_BC_NONE, 4, 0.25, 0, 0, 0, 2, "tail*", ""
-  };
+  struct vg_surface_row surface = { VG_BC_NONE, 4, 0.25, 0,       0, 0,
+                                    0,          0, 2,    "tail*", "" };
   struct vg_sweep_row sweep = { "1,2",         "1:4:x2", "",
                                 "20000,50000", "1:3",    "advancing,octree",
                                 "4,16",        3 };

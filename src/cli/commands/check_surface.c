@@ -51,7 +51,8 @@ static vg_status trace_curves(struct vg_boundary *b, struct findings *f,
 
   if (b->read->is_section || !can_be_followed(&b->surface, &b->check))
     return VG_OK;
-  st = vg_boundary_field(b, &field, err);
+  st = vg_boundary_field(b, b->read->settings.n_source,
+                         b->read->settings.source, &field, err);
   if (st < 0) return st;
   o.field = field;
   o.h_max = vg_boundary_largest_edge(b, o.h_max);

@@ -81,6 +81,10 @@ enum vg_sweep_figure {
   VG_FIGURE_LEAD,
   VG_FIGURE_TRAIL_ASKED,
   VG_FIGURE_TRAIL,
+  VG_FIGURE_ROOT_ASKED, /* along the span, % of the semispan */
+  VG_FIGURE_ROOT,
+  VG_FIGURE_TIP_ASKED,
+  VG_FIGURE_TIP,
   VG_FIGURE_N
 };
 

@@ -220,7 +220,11 @@ static const char *const figure_names[VG_FIGURE_N] = { "nodes",
                                                        "lead_requested",
                                                        "lead",
                                                        "trail_requested",
-                                                       "trail" };
+                                                       "trail",
+                                                       "root_requested",
+                                                       "root",
+                                                       "tip_requested",
+                                                       "tip" };
 
 /* Half of the largest extent of the boundary, in reference lengths. */
 static double farfield(const json_t *report, double length)
@@ -252,6 +256,8 @@ void vg_sweep_figures(const json_t *report, const struct vg_sweep_options *o,
                                       "boundary_quadrilaterals" };
   static const char *const kind[] = { "tetrahedra", "pyramids", "prisms",
                                       "hexahedra" };
+  static const char *const place[] = { "leading_edges", "trailing_edges",
+                                       "roots", "tips" };
   const json_t *layers = json_object_get(report, "layers");
   double *f = c->figure;
 
@@ -270,12 +276,10 @@ void vg_sweep_figures(const json_t *report, const struct vg_sweep_options *o,
   f[VG_FIGURE_GROWTH] = vg_json_number(layers, "all", "growth", "max");
   f[VG_FIGURE_FULL] = vg_json_number(layers, "all", "percent_full");
   f[VG_FIGURE_FARFIELD] = farfield(report, o->length);
-  for (int k = 0; k < 2; k++) {
-    const char *edge = k ? "trailing_edges" : "leading_edges";
-
-    f[VG_FIGURE_LEAD_ASKED + 2 * k] = vg_json_number(report, "remesh", edge,
+  for (int k = 0; k < 4; k++) {
+    f[VG_FIGURE_LEAD_ASKED + 2 * k] = vg_json_number(report, "remesh", place[k],
                                                      "requested_percent");
-    f[VG_FIGURE_LEAD + 2 * k] = vg_json_number(report, "remesh", edge,
+    f[VG_FIGURE_LEAD + 2 * k] = vg_json_number(report, "remesh", place[k],
                                                "reached_percent");
   }
 }
@@ -300,6 +304,8 @@ enum {
   ROW_GROWTH,
   ROW_LEAD,
   ROW_TRAIL,
+  ROW_ROOT,
+  ROW_TIP,
   ROW_FARFIELD,
   ROW_FULL,
   ROW_RATIO,
@@ -310,6 +316,8 @@ static const char *const row_names[ROW_N] = {
   "growth ratio of the layers",
   "leading edges (% of the chord)",
   "trailing edges (% of the chord)",
+  "root (% of the semispan)",
+  "tip (% of the semispan)",
   "farfield (reference lengths)",
   "full layers (% of wall faces)",
   "cells / those of the level before"
@@ -354,6 +362,8 @@ static double requested(const struct vg_sweep *s, size_t i, int row)
   case ROW_GROWTH: return l->growth;
   case ROW_LEAD: return edge_spacing(s, i, VG_FIGURE_LEAD_ASKED);
   case ROW_TRAIL: return edge_spacing(s, i, VG_FIGURE_TRAIL_ASKED);
+  case ROW_ROOT: return s->item[i].figure[VG_FIGURE_ROOT_ASKED];
+  case ROW_TIP: return s->item[i].figure[VG_FIGURE_TIP_ASKED];
   case ROW_FARFIELD: return VG_FAMILY_FARFIELD;
   case ROW_FULL: return 100;
   default: return cells_ratio(s, i);
@@ -362,13 +372,11 @@ static double requested(const struct vg_sweep *s, size_t i, int row)
 
 static double reached(const struct vg_sweep *s, size_t i, int row)
 {
-  static const int figure[ROW_N] = { VG_FIGURE_Y_PLUS,
-                                     VG_FIGURE_GROWTH,
-                                     VG_FIGURE_LEAD,
-                                     VG_FIGURE_TRAIL,
-                                     VG_FIGURE_FARFIELD,
-                                     VG_FIGURE_FULL,
-                                     -1 };
+  static const int figure[ROW_N] = {
+    VG_FIGURE_Y_PLUS,   VG_FIGURE_GROWTH, VG_FIGURE_LEAD,
+    VG_FIGURE_TRAIL,    VG_FIGURE_ROOT,   VG_FIGURE_TIP,
+    VG_FIGURE_FARFIELD, VG_FIGURE_FULL,   -1
+  };
   const struct vg_sweep_case *c = &s->item[i], *p = vg_sweep_before(s, i);
 
   if (figure[row] >= 0) return c->figure[figure[row]];

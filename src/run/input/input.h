@@ -66,8 +66,19 @@ struct vg_put_back {
   double seconds;
 };
 
-/* Edge lengths at leading or at trailing edges in local chords, means over the
- * triangles there. n 0: none were requested by the table `surface`. */
+/* Where the table `surface` requests edge lengths relative to a wing: at its
+ * leading and trailing edges in local chords, at its root and tips in
+ * semispans. */
+enum vg_spacing_place {
+  VG_AT_LEAD,
+  VG_AT_TRAIL,
+  VG_AT_ROOT,
+  VG_AT_TIP,
+  VG_SPACING_N
+};
+
+/* Edge lengths at such a place, means over the triangles there. n 0: none were
+ * requested. */
 struct vg_edge_spacing {
   double asked, reached;
   size_t n; /* triangles */
@@ -88,7 +99,7 @@ struct vg_remeshing {
                                        and after. */
   double seconds;
   struct vg_put_back back;
-  struct vg_edge_spacing spacing[2]; /* at leading, at trailing edges */
+  struct vg_edge_spacing spacing[VG_SPACING_N];
   double volume[2]; /* Volume enclosed by the remeshed surface, and by the CAD
                        model as Open CASCADE integrates it; NAN if one of them
                        is not closed. */
@@ -282,10 +293,11 @@ struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 /** 1 if sources or the map may request sizes that depend on the direction. */
 int vg_boundary_is_stretched(const struct vg_boundary *b);
 
-/** Builds the sizing field of sources and map over the surface, to whose edges
- * it does not refer, if its sizes depend on the direction; if not, *field is
- * unchanged. Freed by the caller with vg_sizing_free. */
-vg_status vg_boundary_field(const struct vg_boundary *b,
+/** Builds the sizing field of source[n_source] and the map over the surface, to
+ * whose edges it does not refer, if its sizes depend on the direction; if not,
+ * *field is unchanged. Freed by the caller with vg_sizing_free. */
+vg_status vg_boundary_field(const struct vg_boundary *b, size_t n_source,
+                            const struct vg_source *source,
                             struct vg_sizing **field, struct vg_error *err);
 
 /** Largest size of a remeshed surface where the setting is h_max, 0: the

@@ -182,6 +182,8 @@ static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
   const struct vg_surface_sizes *sizes = q->sizes;
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
 
+  o.n_source = sizes->n_source;
+  o.source = sizes->source;
   o.map = b->map;
   o.field = sizes->field;
   o.h_max = vg_boundary_largest_edge(b, o.h_max);
@@ -394,7 +396,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
   struct vg_remeshing *r = &b->remeshing;
-  struct vg_surface_sizes sizes = { NULL, NULL, NULL, NULL };
+  struct vg_surface_sizes sizes = { 0 };
   struct remesh_request q;
   const int has_defects = b->check.n_defect >
                           b->check.count[VG_DEFECT_OPEN_EDGE];
@@ -416,7 +418,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(given_areas(b, &given, r->area, err));
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
-  VG_TRY(vg_boundary_field(b, &sizes.field, err));
+  VG_TRY(vg_boundary_field(b, sizes.n_source, sizes.source, &sizes.field, err));
   q = (struct remesh_request){ hard, &sizes };
   VG_TRY(b->model.cad && !has_defects
            ? remesh_tessellation(b, &given, &q, show, err)

@@ -131,8 +131,11 @@ struct vg_surface_sizes {
   double *across;  /* [n_patch] edges across strips. */
   double *stretch; /* [3 n_tri] as in vg_remesh_options; NULL if nothing is
                       stretched. */
-  struct vg_sizing *field; /* Sources and map if their sizes depend on the
-                              direction; else NULL. */
+  size_t n_source, cap_source;
+  struct vg_source *source; /* [n_source] owned: those of the settings and at
+                               the ends of spans. */
+  struct vg_sizing *field;  /* Sources and map if their sizes depend on the
+                               direction; else NULL. */
 };
 
 /** Computes them from the settings for the current surface. VG_ERR_INPUT for
@@ -142,16 +145,37 @@ vg_status vg_surface_sizes_make(const struct vg_boundary *b,
                                 struct vg_surface_sizes *s,
                                 struct vg_error *err);
 
+/** Adds a source. VG_ERR_MEMORY. */
+vg_status vg_surface_sizes_add(struct vg_surface_sizes *s,
+                               const struct vg_source *source,
+                               struct vg_error *err);
+
 void vg_surface_sizes_release(struct vg_surface_sizes *s);
 
-/** Measures the edge lengths of the remeshed surface at the leading (to[0]) and
- * trailing (to[1]) edges of the table `surface`: of the equilateral triangles
- * that have the area of the triangles at leading edges, or the height of those
- * at trailing edges. Bases of blunt trailing edges do not count. to: all 0.
- * O(n) for each row. VG_ERR_MEMORY. */
+/** Measures the edge lengths of the remeshed surface where the table `surface`
+ * requests them: of the equilateral triangles that have the area of the
+ * triangles at leading edges, or the height of those at trailing edges, and the
+ * extent along the span of the triangles at the root and the tips. Bases of
+ * blunt trailing edges and cut tips do not count. to: all 0. O(n) for each row.
+ * VG_ERR_MEMORY. */
 vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
-                                     struct vg_edge_spacing to[2],
+                                     struct vg_edge_spacing to[VG_SPACING_N],
                                      struct vg_error *err);
+
+/* run/input/span_sizes.c -------------------------------------------------- */
+
+/** Adds sources at the root and at the tips of the patches with mark[n_patch]
+ * 1, whose sizes are these shares of the semispan; 0: none. The span is along y
+ * or z, whichever these patches are longer along together, from the symmetry
+ * plane, or else from the middle of the body. VG_ERR_MEMORY. */
+vg_status vg_span_sizes(const struct vg_boundary *b, const uint8_t *mark,
+                        double root, double tip, struct vg_surface_sizes *to,
+                        struct vg_error *err);
+
+/** Adds to to[0] and to[1] what was requested and reached at the root and at
+ * the tip. */
+void vg_span_measure(const struct vg_boundary *b, const uint8_t *mark,
+                     double root, double tip, struct vg_edge_spacing to[2]);
 
 /** Adds a note if `auto` remeshes because of slivers, and a warning if slivers
  * remain. */

@@ -27,10 +27,10 @@ int vg_boundary_is_stretched(const struct vg_boundary *b)
   return 0;
 }
 
-vg_status vg_boundary_field(const struct vg_boundary *b,
+vg_status vg_boundary_field(const struct vg_boundary *b, size_t n_source,
+                            const struct vg_source *source,
                             struct vg_sizing **field, struct vg_error *err)
 {
-  const struct vg_settings *s = &b->read->settings;
   struct vg_sizing_options options = vg_boundary_sizing(b);
   struct vg_sizing *made = NULL;
   vg_status st;
@@ -39,7 +39,7 @@ vg_status vg_boundary_field(const struct vg_boundary *b,
   options.from_surface = 0;
   options.threads = b->threads;
   if (!(options.h_max > 0)) options.h_max = INFINITY;
-  st = vg_sizing_new(&options, s->n_source, s->source, &b->surface, &made, err);
+  st = vg_sizing_new(&options, n_source, source, &b->surface, &made, err);
   if (st < 0) return st;
   if (vg_sizing_is_stretched(made)) *field = made;
   else vg_sizing_free(made);

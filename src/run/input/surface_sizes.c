@@ -269,6 +269,7 @@ static vg_status take_row(const struct vg_boundary *b,
     on[i][1] = mark[m->n_patch + i];
     if (!adjacent && mark[i]) take_patch(b, i, row, s);
   }
+  if (!adjacent) VG_TRY(vg_span_sizes(b, mark, row->root, row->tip, s, err));
   if (adjacent) st = take_curve(m, row, on, s, err);
   else if (row->trail > 0)
     st = size_trail(b, row, (const uint8_t(*)[2])on, s->cap, err);
@@ -290,13 +291,27 @@ static vg_status take_rows(const struct vg_boundary *b,
   return st;
 }
 
+vg_status vg_surface_sizes_add(struct vg_surface_sizes *s,
+                               const struct vg_source *source,
+                               struct vg_error *err)
+{
+  if (vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
+                 sizeof *s->source))
+    return vg_fail_memory(err, "the sources of the surface");
+  s->source[s->n_source++] = *source;
+  return VG_OK;
+}
+
 vg_status vg_surface_sizes_make(const struct vg_boundary *b,
                                 struct vg_surface_sizes *s,
                                 struct vg_error *err)
 {
+  const struct vg_settings *set = &b->read->settings;
   vg_status st = VG_OK;
 
-  if (!b->read->settings.n_surface) return VG_OK;
+  for (size_t i = 0; i < set->n_source; i++)
+    VG_TRY(vg_surface_sizes_add(s, &set->source[i], err));
+  if (!set->n_surface) return VG_OK;
   s->cap = vg_alloc(b->surface.n_point, sizeof *s->cap);
   s->across = vg_alloc(b->surface.n_patch, sizeof *s->across);
   if (!s->cap || !s->across)
@@ -304,8 +319,7 @@ vg_status vg_surface_sizes_make(const struct vg_boundary *b,
   for (size_t i = 0; i < b->surface.n_point; i++) s->cap[i] = INFINITY;
   for (size_t i = 0; i < b->surface.n_patch; i++) s->across[i] = 1;
   VG_TRY(take_rows(b, s, err));
-  for (size_t i = 0; i < b->surface.n_point; i++)
-    s->cap[i] *= b->read->settings.scale;
+  for (size_t i = 0; i < b->surface.n_point; i++) s->cap[i] *= set->scale;
 done:
   return st;
 }
@@ -376,9 +390,15 @@ static void measure_trail(const struct vg_mesh *m, const uint8_t (*on)[2],
     }
 }
 
+/* Does the row request edge lengths relative to a wing? */
+static int is_spaced(const struct vg_surface_row *row)
+{
+  return row->lead > 0 || row->trail > 0 || row->root > 0 || row->tip > 0;
+}
+
 static vg_status measure_rows(const struct vg_boundary *b, uint8_t *mark,
                               uint8_t (*on)[2], const double *chord,
-                              struct vg_edge_spacing to[2],
+                              struct vg_edge_spacing to[VG_SPACING_N],
                               struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
@@ -388,40 +408,42 @@ static vg_status measure_rows(const struct vg_boundary *b, uint8_t *mark,
   for (size_t i = 0; i < s->n_surface; i++) {
     const struct vg_surface_row *row = &s->surface_row[i];
 
-    if (!(row->lead > 0 || row->trail > 0)) continue;
+    if (!is_spaced(row)) continue;
     memset(mark, 0, m->n_patch);
     VG_TRY(vg_patch_ref_mark("surface", row->patch, row->patch_name, m,
                              m->n_patch, mark, err));
     for (size_t k = 0; k < m->n_patch; k++) {
       on[k][0] = mark[k];
       if (mark[k] && row->lead > 0)
-        measure_lead(m, k, row->lead * s->scale, &to[0]);
+        measure_lead(m, k, row->lead * s->scale, &to[VG_AT_LEAD]);
     }
+    vg_span_measure(b, mark, row->root * s->scale, row->tip * s->scale,
+                    &to[VG_AT_ROOT]);
     if (row->trail > 0)
       measure_trail(m, (const uint8_t(*)[2])on, row->trail * s->scale, chord,
-                    &to[1]);
+                    &to[VG_AT_TRAIL]);
   }
 done:
   return st;
 }
 
 vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
-                                     struct vg_edge_spacing to[2],
+                                     struct vg_edge_spacing to[VG_SPACING_N],
                                      struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   const struct vg_mesh *m = &b->surface;
   struct vg_trailing t = VG_TRAILING_INIT;
-  int lead = 0, trail = 0;
+  int any = 0, trail = 0;
   double *chord;
   uint8_t *mark;
   vg_status st;
 
   for (size_t i = 0; i < s->n_surface; i++) {
-    lead |= s->surface_row[i].lead > 0;
+    any |= is_spaced(&s->surface_row[i]);
     trail |= s->surface_row[i].trail > 0;
   }
-  if (!lead && !trail) return VG_OK;
+  if (!any) return VG_OK;
   chord = vg_calloc(m->n_point, sizeof *chord);
   mark = vg_calloc(3 * m->n_patch, 1);
   if (!chord || !mark) VG_TRY(vg_fail_memory(err, "the edges of the surface"));
@@ -430,7 +452,7 @@ vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
     for (int k = 0; k < 2; k++) chord[t.edge[i].point[k]] = t.edge[i].chord;
   VG_TRY(
     measure_rows(b, mark, (uint8_t(*)[2])(mark + m->n_patch), chord, to, err));
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < VG_SPACING_N; k++) {
     if (!to[k].n) continue;
     to[k].asked /= (double)to[k].n;
     to[k].reached /= (double)to[k].n;
@@ -447,6 +469,7 @@ void vg_surface_sizes_release(struct vg_surface_sizes *s)
   free(s->cap);
   free(s->across);
   free(s->stretch);
+  free(s->source);
   vg_sizing_free(s->field);
   memset(s, 0, sizeof *s);
 }

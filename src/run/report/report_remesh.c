@@ -59,16 +59,20 @@ static void back_text(FILE *to, const struct vg_put_back *b)
   distance_text(to, "distance of points from CAD after projection", &b->off[1]);
 }
 
-static void spacing_text(FILE *to, const struct vg_edge_spacing spacing[2])
+static void spacing_text(FILE *to,
+                         const struct vg_edge_spacing spacing[VG_SPACING_N])
 {
-  static const char *const edge[] = { "leading", "trailing" };
+  static const char *const place[VG_SPACING_N] = {
+    "edge length at leading edges, % of the local chord",
+    "edge length at trailing edges, % of the local chord",
+    "edge length along the span at roots, % of the semispan",
+    "edge length along the span at tips, % of the semispan"
+  };
 
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < VG_SPACING_N; k++)
     if (spacing[k].n)
-      fprintf(to,
-              "  edge length at %s edges, %% of the local chord: requested "
-              "%.4g, reached %.4g\n",
-              edge[k], 100 * spacing[k].asked, 100 * spacing[k].reached);
+      fprintf(to, "  %s: requested %.4g, reached %.4g\n", place[k],
+              100 * spacing[k].asked, 100 * spacing[k].reached);
 }
 
 static void stretch_text(FILE *to, const struct vg_remesh_report *r)
@@ -229,7 +233,7 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
   return json_pack(
     "{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
     "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o "
-    "s:o s:o}",
+    "s:o s:o s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1], "points",
     (json_int_t)r->n_point[0], (json_int_t)r->n_point[1], "corners",
     (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line, "line_length",
@@ -244,8 +248,10 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds, "patches", patches_json(n, m),
     "below_20_degrees", bad_json(r, SIZE_MAX), "stretched", stretch_json(r),
-    "leading_edges", spacing_json(&n->spacing[0]), "trailing_edges",
-    spacing_json(&n->spacing[1]));
+    "leading_edges", spacing_json(&n->spacing[VG_AT_LEAD]), "trailing_edges",
+    spacing_json(&n->spacing[VG_AT_TRAIL]), "roots",
+    spacing_json(&n->spacing[VG_AT_ROOT]), "tips",
+    spacing_json(&n->spacing[VG_AT_TIP]));
 }
 
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)

@@ -73,7 +73,7 @@ struct vg_patch_row {
 struct vg_surface_row {
   int32_t patch, adjacent; /* the patch, and the other patch of the
                             curve; VG_BC_NONE: no curve */
-  double size, lead, trail, across, stretch;
+  double size, lead, trail, root, tip, across, stretch;
   /* Names or patterns instead of patch and adjacent; "": the numbers are used.
    */
   char patch_name[VG_NAME_MAX], adjacent_name[VG_NAME_MAX];

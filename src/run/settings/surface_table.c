@@ -27,6 +27,13 @@ static const struct vg_param columns[] = {
     .help = "Edge length at the trailing edges of the patch, which are found "
             "as for wakes with the stream along x, over their local chord; "
             "0: no limit" },
+  { "root", AT(root), .type = VG_PARAM_REAL, .hi = 1, .unit = "semispans",
+    .help = "Edge length at the root of the patch over the distance of its tip "
+            "from the symmetry plane, or from the middle of a complete body; "
+            "0: no limit" },
+  { "tip", AT(tip), .type = VG_PARAM_REAL, .hi = 1, .unit = "semispans",
+    .help = "Edge length at the tips of the patch, in the same unit; 0: no "
+            "limit" },
   { "across", AT(across), .type = VG_PARAM_REAL, .hi = 1000, .unit = "edges",
     .help = "Number of edges across the patch where it is a narrow strip "
             "between two feature curves, such as a blunt trailing edge; "
@@ -55,21 +62,23 @@ static vg_status check_row(const struct vg_surface_row *r, size_t line,
                            struct vg_error *err)
 {
   const int adjacent = vg_surface_row_has_adjacent(r);
+  const int of_patch = r->lead > 0 || r->trail > 0 || r->root > 0 ||
+                       r->tip > 0 || r->across > 0;
   char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
 
   vg_param_format(&columns[0], r, one, sizeof one);
   vg_param_format(&columns[1], r, two, sizeof two);
-  if (!(r->size > 0 || r->lead > 0 || r->trail > 0 || r->across > 0 ||
-        r->stretch > 0))
+  if (!(r->size > 0 || of_patch || r->stretch > 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: line %zu, patch %s, has no "
-                   "request; give size, lead, trail, across or stretch",
+                   "request; give size, lead, trail, root, tip, across or "
+                   "stretch",
                    line, one);
-  if (adjacent && (r->lead > 0 || r->trail > 0 || r->across > 0))
+  if (adjacent && of_patch)
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: only size and stretch apply to the curve between "
-                   "patches %s and %s; give lead, trail and across "
-                   "on a line without `adjacent`",
+                   "patches %s and %s; give lead, trail, root, tip "
+                   "and across on a line without `adjacent`",
                    one, two);
   if (!adjacent && r->stretch > 0)
     return vg_fail(err, VG_ERR_INPUT,

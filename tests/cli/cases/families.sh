@@ -123,3 +123,13 @@ jq -e '.remesh | .leading_edges, .trailing_edges |
   .reached_percent / .requested_percent | . > 0.8 and . < 1.15' \
   spaced/long.surface.json >ratios || fail "spacing: $(cat ratios)"
 ! grep -q false ratios || fail "spacing: $(cat ratios)"
+
+# Edge lengths along the span at root and tip, in semispans.
+sed 's/lead  trail/root  tip/' spacing.deck >span.deck
+vanguard surface -q long.obj --deck span.deck --flow external --out span
+exits 0
+says out "edge length along the span at tips, % of the semispan: requested 1, reached"
+jq -e '.remesh | .roots, .tips |
+  .reached_percent / .requested_percent | . > 0.7 and . < 1.15' \
+  span/long.surface.json >ratios || fail "span: $(cat ratios)"
+! grep -q false ratios || fail "span: $(cat ratios)"
