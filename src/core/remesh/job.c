@@ -166,6 +166,12 @@ static double expected_number(const struct vg_remesh_job *j)
 static vg_status check_number(struct vg_remesh_job *j, struct vg_error *err)
 {
   j->n_expected = expected_number(j);
+  if (j->o->most_tri > 0 && j->n_expected > j->o->most_tri)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the remeshed surface would have some %.2g triangles, more "
+                   "than the %.9g cells that are allowed (max_cells); use "
+                   "larger sizes, or raise the limit",
+                   j->n_expected, j->o->most_tri);
   if (j->n_expected < TRIANGLES) return VG_OK;
   if (!isfinite(j->n_expected))
     return vg_fail(err, VG_ERR_INPUT,

@@ -48,6 +48,8 @@ struct vg_remesh_options {
                            bodies inside a given domain, too. 0: their sizes
                            are at most 0.02 of their length. */
   double growth;        /* > 1; growth of sizes along the surface. */
+  double most_tri;      /* Largest number of new triangles; 0: no limit but that
+                           of the numbering. */
   size_t n_source;      /* Sources of the sizing field, the same as for the
                            volume. */
   const struct vg_source *source;

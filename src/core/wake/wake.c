@@ -11,7 +11,8 @@
 #include "core/geometry/vector.h"
 
 /* W2: limits of a panel and of a strip. */
-#define DEVIATION 0.1 /* of the half height */
+#define DEVIATION 0.1      /* of the half height */
+#define CELLS_PER_CUBE 9.0 /* tetrahedra per cube of the edge length */
 #define CHORD_RATIO 1.15
 #define STRIP_RATIO 1.1 /* of sizes along the stream */
 #define CHORD_SLOPE 4.0 /* change of the chord per unit of span */
@@ -330,6 +331,20 @@ static void behind(const struct vg_wake_panel *p, int end, const double flow[3],
                    double s, double x[3])
 {
   for (int k = 0; k < 3; k++) x[k] = p->x[end][k] + s * p->chord[end] * flow[k];
+}
+
+/* Span times the integral of (cells across) / h^2 along the stream. */
+double vg_wake_cells(const struct vg_wake *w, const struct vg_wake_panel *p,
+                     double scale)
+{
+  const double chord = 0.5 * (p->chord[0] + p->chord[1]);
+  const double span = vg_distance(p->x[0], p->x[1]) / chord;
+  const double across = 2 * w->height / w->size;
+  const double first = w->size, last = size_at(w, w->length);
+  const double along = w->length / (first * last); /* of ds / h(s)^2 */
+
+  return CELLS_PER_CUBE * span * across * along /
+         (w->stretch * scale * scale * scale);
 }
 
 void vg_wake_sources(const struct vg_wake *w, const struct vg_wake_panel *p,

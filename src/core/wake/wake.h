@@ -57,6 +57,12 @@ vg_status vg_wake_panels_make(const struct vg_mesh *m,
 
 void vg_wake_panels_release(struct vg_wake_panels *p);
 
+/** Cells that the wake of one panel requests for one direction of the stream,
+ * without those in which sizes grow around it: tetrahedra of 9 per cube of the
+ * edge length. scale: factor on sizes. */
+double vg_wake_cells(const struct vg_wake *w, const struct vg_wake_panel *p,
+                     double scale);
+
 /** Number of sources of one panel. */
 size_t vg_wake_sources_count(const struct vg_wake *w);
 

@@ -34,6 +34,7 @@ struct body {
   size_t number; /* of the row, from 1 */
   struct vg_wake wake;
   struct vg_wake_panels panels;
+  double n_cell; /* expected of all rows so far */
   size_t n_flow;
   double flow[VG_WAKE_ANGLES * VG_WAKE_ANGLES][3];
 };
@@ -222,8 +223,34 @@ static double panel_length(const struct body *b)
   return length;
 }
 
+/* The wakes of all directions lie on each other next to the body. */
+static double expected_cells(const struct body *b)
+{
+  double n = 0;
+
+  for (size_t i = 0; i < b->panels.n; i++)
+    n += vg_wake_cells(&b->wake, &b->panels.item[i], b->read->settings.scale);
+  return n;
+}
+
+static vg_status check_cells(struct body *b, struct vg_error *err)
+{
+  const int64_t most = b->read->settings.max_cells;
+
+  if (b->read->is_section) return VG_OK;
+  b->n_cell += expected_cells(b);
+  if (!most || b->n_cell <= (double)most) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "wakes: up to line %zu, the wakes request at least %.2g "
+                 "cells, but only %lld are allowed (max_cells); increase size "
+                 "or growth, reduce length or height, or give stretch",
+                 b->number, b->n_cell, (long long)most);
+}
+
 static void note_wake(const struct body *b, size_t n_source)
 {
+  char cells[40] = "";
+
   char patch[2 * VG_NAME_MAX + 4];
   double least = INFINITY, most = 0, size = b->wake.size;
   const double growth = b->wake.growth - 1;
@@ -234,13 +261,15 @@ static void note_wake(const struct body *b, size_t n_source)
       most = fmax(most, b->panels.item[i].chord[k]);
     }
   row_name(b, patch, sizeof patch);
+  if (!b->read->is_section)
+    snprintf(cells, sizeof cells, ", at least %.2g cells", expected_cells(b));
   vg_note(b->read->notes,
           "wake %zu (patch %s): trailing edges of %.4g in total, with chords "
           "of %.4g to %.4g, and %zu direction%s of the stream; sizes of %.3g "
-          "to %.3g, %zu sources",
+          "to %.3g, %zu sources%s",
           b->number, patch, panel_length(b), least, most, b->n_flow,
           b->n_flow > 1 ? "s" : "", size * least,
-          (size + growth * b->wake.length) * most, n_source);
+          (size + growth * b->wake.length) * most, n_source, cells);
 }
 
 static vg_status add_sources(struct body *b, struct vg_error *err)
@@ -321,6 +350,7 @@ static vg_status place_row(struct body *b, struct vg_error *err)
     vg_wake_panels_make(&b->m, &b->edges, b->on, &b->wake, &b->panels, err));
   if (!b->panels.n) return refuse(b, err);
   VG_TRY(find_flows(b, err));
+  VG_TRY(check_cells(b, err));
   VG_TRY(add_sources(b, err));
   st = add_probes(b, err);
 done:

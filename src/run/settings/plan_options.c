@@ -135,6 +135,7 @@ struct vg_remesh_options vg_options_remesh(const struct vg_settings *s)
   o.is_requested = s->surface_size > 0;
   o.growth = s->growth;
   o.scale = s->scale;
+  o.most_tri = (double)s->max_cells;
   o.n_source = s->n_source;
   o.source = s->source;
   return o;

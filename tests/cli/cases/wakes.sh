@@ -163,6 +163,20 @@ for at in json.load(open(sys.argv[1]))["wakes"][0]["cells_across"]:
 PY
 done
 
+# A wake that is far too fine is refused before the surface is remeshed, as are
+# sizes of the surface.
+printf 'fine\n\nwakes\npatch  size\n*      0.0005\n' >w/fine.deck
+vanguard mesh -q -p w/wing-sharp --deck w/fine.deck --remesh-surface yes \
+  --max-cells 20000000 --out w/fine
+exits 1
+says err "the wakes request at least"
+says err "but only 20000000 are allowed (max_cells)"
+[ ! -e w/fine ] || fail "files of a refused wake"
+vanguard surface -q w/wing-sharp.lb8.ugrid --surface-size 0.001 \
+  --max-cells 1000000 --out w/fine
+exits 1
+says err "triangles, more than the 1000000 cells that are allowed (max_cells)"
+
 # A ball has none.
 vanguard demo sphere --cells 20000 --out s
 exits 0
