@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "core/mesh/copies.h"
 #include "run/input/shape_parts.h"
+#include "run/input/wakes.h"
 #include "run/settings/patch_names.h"
 
 static int wants_inner(const struct vg_settings *s)
@@ -16,6 +17,8 @@ static int wants_inner(const struct vg_settings *s)
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role > VG_PATCH_WALL;
+  for (size_t i = 0; i < s->n_wake; i++)
+    wants |= s->wake_row[i].kind == VG_WAKE_SHEET;
   return wants;
 }
 
@@ -34,15 +37,18 @@ const char *vg_inner_source(const struct vg_settings *s, char *text,
                             size_t size)
 {
   const char *const name[] = { "baffles ", "sheets ", "zone_interfaces ",
-                               "the table patches" };
-  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "" };
-  int has_role = 0;
+                               "the table patches", "the table wakes" };
+  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "",
+                               "" };
+  int has_role = 0, has_wake = 0;
   size_t n = 0;
 
   for (size_t i = 0; i < s->n_patch; i++)
     has_role |= s->patch[i].role > VG_PATCH_WALL;
-  for (size_t i = 0; i < 4 && n < size; i++)
-    if (*list[i] || (i == 3 && has_role))
+  for (size_t i = 0; i < s->n_wake; i++)
+    has_wake |= s->wake_row[i].kind == VG_WAKE_SHEET;
+  for (size_t i = 0; i < 5 && n < size; i++)
+    if (*list[i] || (i == 3 && has_role) || (i == 4 && has_wake))
       n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
                             name[i], list[i]);
   return text;
@@ -108,8 +114,11 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     on[at] = 1;
     st = give(m, on, s->patch[i].role, "the table patches", role, from, err);
   }
-  for (size_t i = 0; i < m->n_patch; i++)
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (role[i] == VG_PATCH_AUTO && vg_patch_is_wake(&m->patch[i]))
+      role[i] = VG_PATCH_SHEET;
     if (role[i] == VG_PATCH_WALL) role[i] = VG_PATCH_AUTO;
+  }
 done:
   free(on);
   free(from);

@@ -494,12 +494,6 @@ static void set_condition(struct vg_patch *p, int32_t code, int axis)
   if (p->bc != before) p->family = p->bc;
 }
 
-int vg_boundary_is_cap(const struct vg_boundary *b, size_t i)
-{
-  return b->n_given_patch && i >= b->n_given_patch &&
-         !strncmp(b->surface.patch[i].name, "cap_", 4);
-}
-
 /* The table takes precedence over the .mapbc. */
 vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
                                int may_lack, struct vg_mesh *surface,
@@ -732,6 +726,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   VG_TRY(vg_units_end(r, NULL, err));
   VG_TRY(vg_read_sizes(r, err));
   VG_TRY(vg_read_shear(r, err));
+  VG_TRY(vg_read_add_wake_patches(r, err));
   VG_TRY(apply_conditions(r, err));
   VG_TRY(apply_patch_table(r, err));
   vg_note_symmetry(r->notes, &r->surface);
@@ -766,6 +761,7 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
 {
   vg_status st;
 
+  VG_TRY(vg_read_add_wake_patches(r, err));
   VG_TRY(apply_aflr(r, r->files.tags, 0, err));
   VG_TRY(apply_aflr(r, r->files.aflr, 1, err));
   VG_TRY(vg_read_heights(r, err));

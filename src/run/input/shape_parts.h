@@ -15,6 +15,8 @@ vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
                                int may_lack, struct vg_mesh *surface,
                                struct vg_error *err);
 
+/* run/input/walls.c ------------------------------------------------------ */
+
 /** 1 if patch i of the surface is a cap that closes a hole. */
 int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "core/flow/flow.h"
 #include "core/geometry/vector.h"
+#include "core/wake/wake_sheet.h"
 #include "io/stream/convention.h"
 #include "run/input/cones.h"
 #include "run/input/shape_parts.h"
@@ -324,6 +325,95 @@ static vg_status add_probes(struct body *b, struct vg_error *err)
   return VG_OK;
 }
 
+/* --- sheets --------------------------------------------------------------- */
+
+int vg_patch_is_wake(const struct vg_patch *p)
+{
+  return p->is_sheet == 1 && p->inner == VG_INNER_NOT;
+}
+
+static int has_name(const struct vg_mesh *m, const char *name)
+{
+  int has = 0;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    has |= strcmp(m->patch[i].name, name) == 0;
+  return has;
+}
+
+/* Adds the patch wakeN, or wakeN_2 and so on; N: number of the row. */
+static vg_status add_patch(struct vg_mesh *m, size_t number,
+                           struct vg_error *err)
+{
+  char name[VG_NAME_MAX];
+  int32_t id = 0;
+  size_t at;
+
+  snprintf(name, sizeof name, "wake%zu", number);
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].id > id) id = m->patch[i].id;
+  for (int k = 2; has_name(m, name); k++)
+    snprintf(name, sizeof name, "wake%zu_%d", number, k);
+  at = id < INT32_MAX ? vg_mesh_add_patch(m, id + 1, name) : SIZE_MAX;
+  if (at == SIZE_MAX) return vg_fail_memory(err, "a wake sheet");
+  m->patch[at].is_sheet = 1;
+  return VG_OK;
+}
+
+vg_status vg_read_add_wake_patches(struct vg_read *r, struct vg_error *err)
+{
+  const struct vg_settings *s = &r->settings;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < s->n_wake && st >= 0; i++)
+    if (s->wake_row[i].kind == VG_WAKE_SHEET)
+      st = add_patch(&r->surface, i + 1, err);
+  return st;
+}
+
+/* The patch of the current row: wakes have theirs in the order of the rows. */
+static size_t patch_of(const struct body *b)
+{
+  const struct vg_mesh *m = &b->read->surface;
+  size_t left = 0, at = 0;
+
+  for (const struct vg_wake_row *row = b->read->wakes.row; row < b->row; row++)
+    left += row->kind == VG_WAKE_SHEET;
+  while (!vg_patch_is_wake(&m->patch[at]) || left-- > 0) at++;
+  return at;
+}
+
+static vg_status place_sheet(struct body *b, struct vg_error *err)
+{
+  struct vg_mesh *m = &b->read->surface;
+  struct vg_wake_sheet s = { .length = b->row->length };
+  const size_t n = m->n_tri;
+  char patch[2 * VG_NAME_MAX + 4];
+  size_t at;
+  vg_status st;
+
+  if (b->read->is_section)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "wakes: line %zu: a section has no sheets; give kind "
+                   "sources",
+                   b->number);
+  VG_TRY(find_flows(b, err));
+  memcpy(s.flow, b->flow[0], sizeof s.flow);
+  VG_TRY(find_up(b, 0, s.up, err));
+  at = patch_of(b);
+  VG_TRY(vg_wake_sheet_add(&b->m, &b->edges, b->on, &s, m, (uint32_t)at, err));
+  row_name(b, patch, sizeof patch);
+  vg_note(b->read->notes,
+          "wake %zu (patch %s): a sheet of %zu triangles, patch %d (%s)",
+          b->number, patch, m->n_tri - n, (int)m->patch[at].id,
+          m->patch[at].name);
+  st = vg_settings_add(&b->read->settings, VG_TABLE_WAKES, b->row, err);
+done:
+  return st;
+}
+
+/* --- rows ----------------------------------------------------------------- */
+
 static vg_status refuse_stretch(const struct body *b, struct vg_error *err)
 {
   if (!b->read->is_section || b->row->stretch == 1) return VG_OK;
@@ -348,7 +438,9 @@ static vg_status place_row(struct body *b, struct vg_error *err)
   VG_TRY(find_edges(b, err));
   VG_TRY(
     vg_wake_panels_make(&b->m, &b->edges, b->on, &b->wake, &b->panels, err));
-  if (!b->panels.n) return refuse(b, err);
+  if (!b->panels.n) VG_TRY(refuse(b, err));
+  if (row->kind == VG_WAKE_SHEET) VG_TRY(place_sheet(b, err));
+  if (row->kind == VG_WAKE_SHEET) goto done;
   VG_TRY(find_flows(b, err));
   VG_TRY(check_cells(b, err));
   VG_TRY(add_sources(b, err));

@@ -18,6 +18,12 @@
 #include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
 
+int vg_boundary_is_cap(const struct vg_boundary *b, size_t i)
+{
+  return b->n_given_patch && i >= b->n_given_patch &&
+         !strncmp(b->surface.patch[i].name, "cap_", 4);
+}
+
 #define MESHING_WALL 2 /* Class of a .d3m patch on which layers grow. */
 #define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees. */
 

@@ -44,7 +44,7 @@ void vg_report_wakes_text(FILE *to, const struct vg_read_wakes *w, size_t n,
 {
   char name[2 * VG_NAME_MAX + 4], clean[2 * VG_NAME_MAX + 4];
 
-  if (!w->n) return;
+  if (!n) return;
   fprintf(to, "\nWakes\n  %4s %7s %10s %13s %9s %9s %9s  %s\n", "wake",
           "chords", "requested", "reached mean", "least", "stretch", "measured",
           "patch");
@@ -76,6 +76,7 @@ json_t *vg_report_wakes_json(const struct vg_read_wakes *w, size_t n,
     wake_name(&w->row[i], name, sizeof name);
     json_object_set_new(o, "wake", vg_json_count(i + 1));
     json_object_set_new(o, "patch", vg_text_json(name));
+    json_object_set_new(o, "kind", json_string(vg_wake_kind_word(&w->row[i])));
     for (size_t k = 0; k < VG_WAKE_STATIONS; k++) {
       const struct vg_wake_count c = vg_report_wake_count(n, probe, i, k);
       json_t *at = json_object();

@@ -44,6 +44,7 @@ static const struct {
 #define FILLED "{'minLength':1}"
 #define TRUE "{'const':true}"
 #define MACH "{'const':'mach'}"
+#define COMMA "{'pattern':','}"
 #define ONE_OR_MORE "{'minimum':1}"
 
 /* Conditions on two members of an object: if `first` is given and is `a`, then
@@ -57,6 +58,8 @@ static const struct {
   const char *second, *b;
 } pair_condition[] = {
   { "settings", "first", POSITIVE, EXCLUDES, "y_plus", POSITIVE },
+  { "wakes", "kind", "{'const':'sheet'}", EXCLUDES, "alpha", COMMA },
+  { "wakes", "kind", "{'const':'sheet'}", EXCLUDES, "beta", COMMA },
   { "settings", "ratio", GIVEN, EXCLUDES, "rate1", GIVEN },
   { "settings", "ratio", GIVEN, EXCLUDES, "rate2", GIVEN },
   { "settings", "reynolds", POSITIVE, NEEDS, "reference_length", POSITIVE },
@@ -104,12 +107,14 @@ static const struct {
     "{'required':['size'],'properties':{'size':" POSITIVE "}},"
     "{'required':['lead'],'properties':{'lead':" POSITIVE "}},"
     "{'required':['trail'],'properties':{'trail':" POSITIVE "}},"
+    "{'required':['root'],'properties':{'root':" POSITIVE "}},"
+    "{'required':['tip'],'properties':{'tip':" POSITIVE "}},"
     "{'required':['across'],'properties':{'across':" POSITIVE "}},"
     "{'required':['stretch'],'properties':{'stretch':" POSITIVE "}}]}" },
   { "surface", "{'if':{'required':['adjacent'],"
                "'properties':{'adjacent':{'type':['integer','string']}}},"
                "'then':{'properties':{'lead':{'const':0},'trail':{'const':0},"
-               "'across':{'const':0}}},"
+               "'root':{'const':0},'tip':{'const':0},'across':{'const':0}}},"
                "'else':{'properties':{'stretch':{'const':0}}}}" },
   { "", "{'not':{'required':['settings','farfield'],'properties':{"
         "'settings':{'required':['flow'],"

@@ -93,9 +93,13 @@ enum vg_wake_stream {
   VG_STREAM_MINUS_Z
 };
 
-/** A refined wake of trailing edges (core/wake/wake.h). */
+/** What a wake is made of: sources, or an inner surface. */
+enum vg_wake_kind { VG_WAKE_SOURCES, VG_WAKE_SHEET };
+
+/** A wake of trailing edges (core/wake/wake.h, wake_sheet.h). */
 struct vg_wake_row {
   int32_t patch; /* of its trailing edges */
+  int kind;      /* enum vg_wake_kind */
   double length, size, height, growth;
   double chord;                 /* 0: the local chord */
   double stretch;               /* along the stream */

@@ -72,11 +72,18 @@ static const char *const stream_words[] = { "x", "-x", "y", "-y",
                      .help = about                                             \
   }
 
+/* In the order of enum vg_wake_kind. */
+static const char *const kind_words[] = { "sources", "sheet", NULL };
+
 static const struct vg_param columns[] = {
   { "patch", AT(patch), VG_PATCH_COLUMN(struct vg_wake_row, patch_name),
     .required = 1,
     .help = "Number or name of the patch whose trailing edges have the wake "
             "(* and ? are wildcards; * alone: all)" },
+  { "kind", AT(kind), .type = VG_PARAM_WORD, .words = kind_words, .unit = "",
+    .help = "sources: sizes around the wake; sheet: a surface of triangles "
+            "from the trailing edges along one stream, with fluid on both "
+            "sides, on which layers can grow" },
   CHORDS("length", length, 1000, "Length of the wake downstream"),
   CHORDS("size", size, 10, "Edge length across the wake at the trailing edge"),
   CHORDS("height", height, 10,
@@ -108,6 +115,11 @@ const struct vg_setting_table vg_wake_table = {
   "geometry. Lengths are in chords.",
   columns, sizeof columns / sizeof *columns, sizeof(struct vg_wake_row)
 };
+
+const char *vg_wake_kind_word(const struct vg_wake_row *row)
+{
+  return kind_words[row->kind];
+}
 
 const char *vg_wake_stream_word(const struct vg_wake_row *row)
 {
@@ -147,6 +159,13 @@ vg_status vg_wake_rows_check(const struct vg_settings *s, struct vg_error *err)
                      "wakes: line %zu, patch %s: up and stream name the same "
                      "axis, %s; change one of them",
                      i + 1, patch, up_words[r->up]);
+    if (r->kind == VG_WAKE_SHEET &&
+        (strchr(r->alpha, ',') || strchr(r->beta, ',')))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "wakes: line %zu, patch %s: a sheet follows one stream; "
+                     "give one angle in alpha and in beta, and a line for each "
+                     "further sheet",
+                     i + 1, patch);
     if (r->size > r->length)
       return vg_fail(err, VG_ERR_INPUT,
                      "wakes: line %zu, patch %s: the size, %g chords, exceeds "

@@ -13,6 +13,9 @@ void vg_wake_row_default(struct vg_wake_row *row);
 /** Check all rows. VG_ERR_INPUT for values that contradict each other. */
 vg_status vg_wake_rows_check(const struct vg_settings *s, struct vg_error *err);
 
+/** The word of the kind of a row. Static string. */
+const char *vg_wake_kind_word(const struct vg_wake_row *row);
+
 /** Name of the stream's axis: "x", "-x", ... Static string. */
 const char *vg_wake_stream_word(const struct vg_wake_row *row);
 
