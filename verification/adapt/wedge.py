@@ -4,8 +4,8 @@
 
 wedge.py --vanguard PROGRAM [--cycles N] [--sizes H,...] FOLDER
 
-Errors are those of the pressure against the exact solution, the mean of
-|p - p_exact| / p_behind: on the wedge by area, and in the domain by volume. A
+Errors are those of the mean pressure of the last 600 steps against the exact
+solution, the mean of |p - p_exact| / p_behind: on the wedge by area, and in the domain by volume. A
 uniform mesh with the error of the last adapted one would have as many cells as
 the power law through the two finest uniform meshes says. Fails if that is less
 than five times the cells of the adapted mesh. Needs rhoCentralFoam, numpy and
@@ -56,7 +56,7 @@ def read(path, reader):
     centres.Update()
     data = sizes.GetOutput().GetCellData()
     return (vtk_to_numpy(centres.GetOutput().GetPoints().GetData()),
-            vtk_to_numpy(data.GetArray("p")),
+            vtk_to_numpy(data.GetArray("pMean")),
             lambda name: np.abs(vtk_to_numpy(data.GetArray(name))))
 
 
