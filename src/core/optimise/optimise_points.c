@@ -378,7 +378,7 @@ static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
   h.n_old = 1;
   h.old[0] = c;
   if (vg_try_point(o, x) || !open_cavity(o, worth(o->q[c]), &h) ||
-      (o->metrics && is_crowded(o, &h, least_length)) ||
+      (o->metrics && !is_flat && is_crowded(o, &h, least_length)) ||
       !put_point(o, &h, is_flat))
     return 0;
   for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);

@@ -164,21 +164,6 @@ vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
                                      struct vg_edge_spacing to[VG_SPACING_N],
                                      struct vg_error *err);
 
-/* run/input/span_sizes.c -------------------------------------------------- */
-
-/** Adds sources at the root and at the tips of the patches with mark[n_patch]
- * 1, whose sizes are these shares of the semispan; 0: none. The span is along y
- * or z, whichever these patches are longer along together, from the symmetry
- * plane, or else from the middle of the body. VG_ERR_MEMORY. */
-vg_status vg_span_sizes(const struct vg_boundary *b, const uint8_t *mark,
-                        double root, double tip, struct vg_surface_sizes *to,
-                        struct vg_error *err);
-
-/** Adds to to[0] and to[1] what was requested and reached at the root and at
- * the tip. */
-void vg_span_measure(const struct vg_boundary *b, const uint8_t *mark,
-                     double root, double tip, struct vg_edge_spacing to[2]);
-
 /** Adds a note if `auto` remeshes because of slivers, and a warning if slivers
  * remain. */
 void vg_boundary_note_slivers(struct vg_boundary *b);
