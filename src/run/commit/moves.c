@@ -38,13 +38,11 @@ int vg_path_look(const char *path, struct stat *is)
 static void paths_of(const struct vg_commit *c, size_t i, struct paths *p)
 {
   const struct vg_move *m = &c->moves.move[i];
-  char name[32];
 
-  snprintf(name, sizeof name, "%zu", i);
   vg_commit_path(c->fresh, m->from, p->from);
   vg_commit_path(c->dir, m->to, p->to);
   vg_commit_path(c->hidden, "old", p->folder);
-  vg_commit_path(p->folder, name, p->old);
+  snprintf(p->old, sizeof p->old, "%s/old/%zu", c->hidden, i);
 }
 
 /* A path as people write it: without the "./" of the current folder. */
