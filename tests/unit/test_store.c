@@ -249,7 +249,7 @@ static void strange_files(void **state)
   write_file(path, "x", 1);
   vg_store_close(s, 0);
   s = opened(1, 1);
-  assert_int_equal(access(path, F_OK), 0); /* is none of its files */
+  assert_int_equal(access(path, F_OK), 0); /* is not one of its files */
   assert_int_equal(unlink(path), 0);
   path[strlen(path) - 1] = 0;
   assert_int_equal(unlink(path), 0);
