@@ -140,8 +140,12 @@ int __wrap_open(const char *path, int flags, ...)
 
 int __real_openat(int at, const char *path, int flags, ...);
 int __wrap_openat(int at, const char *path, int flags, ...);
+/* A walk opens 256 folders, of which most are absent: they do not count. */
 int __wrap_openat(int at, const char *path, int flags, ...)
 {
+  if (!(flags & O_CREAT) && strlen(path) == strlen("records/00") &&
+      faccessat(at, path, F_OK, 0))
+    return -1;
   return fails(OPENAT) ? -1 : __real_openat(at, path, flags, 0666);
 }
 
@@ -286,7 +290,7 @@ static void fail_each(enum call what, int error, int is_lasting)
 {
   long n_call = 0;
 
-  for (long at = 0; at <= n_call; at += 1 + n_call / 100) {
+  for (long at = 0; at <= n_call; at++) {
     memset(&faults, 0, sizeof faults);
     mkdir(VG_TMP_DIR "/store_faults", 0777);
     faults.what = what;
