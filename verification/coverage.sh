@@ -50,7 +50,7 @@ counts() {
 # Some unit tests compile sources again, with calls that fail.
 # "FILE BRANCHES TAKEN" for every source of src, or "FILE LINE" for --missed.
 branch_counts() {
-  find "$build" -path '*/src/*' -name '*.gcno' -print0 |
+  find "$build" -ignore_readdir_race -path '*/src/*' -name '*.gcno' -print0 |
     (cd "$objects" && xargs -0r -n 8 gcov -b -c -j -t 2>/dev/null) |
     python3 "$root/verification/branches.py" "$source" ${missed:+--missed}
 }

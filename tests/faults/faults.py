@@ -3,11 +3,12 @@
 """Injected faults: every call site of the C library fails once.
 
     faults.py --vanguard PROGRAM --library fault_calls.so [--depth N] [--case NAME]
-              [--share K/N] [--jobs N] [--site HASH] [FOLDER]
+              [--share K/N] [--of PATTERN] [--jobs N] [--site HASH] [FOLDER]
 
-A first run of each case records the sites of its calls (fault_calls.c). One run for
-each site that no earlier case has follows, in which its first call fails, and one in which all later
-calls of the same class fail, too. The outcome must be one of these two:
+A first run of each case records the sites of its calls (fault_calls.c). One run
+for each site that no earlier case has follows, in which its first call fails, and
+one in which all later calls of the same class fail, too. The outcome must be one
+of these two:
 
 - status 0, and the files and the output of the undisturbed run;
 - a failure with a message on standard error, and no files. A hidden folder can
@@ -17,7 +18,10 @@ calls of the same class fail, too. The outcome must be one of these two:
 A run that ends by a signal, that is still running after two minutes, that says
 nothing, or that leaves other files, is a fault.
 
---share K/N selects part K of N parts of the sites, by their hash.
+--share K/N selects part K of N parts of the sites, by their hash. --of PATTERN
+selects those with a frame in a source whose name begins so, and each fails once:
+with the program of a build for coverage, these failures are counted. (Without
+any memory, gcov itself fails.)
 """
 import argparse
 import concurrent.futures
@@ -263,15 +267,44 @@ set -o pipefail
         return None
 
 
-def name_frames(program, line):
-    """The frames of a site with names of functions."""
+def module_path(program, module):
     folders = [os.path.dirname(program),
                os.path.join(os.path.dirname(os.path.dirname(program)), "lib")]
+    return next((os.path.join(f, m) for f in folders for m in
+                 sorted(os.listdir(f)) if m.startswith(module)), "")
+
+
+def sites_of(program, sites, pattern):
+    """Sites with a frame in a source whose name begins with the pattern; not
+    those of gcov, which writes its counts."""
+    offsets, found, of_gcov = {}, set(), set()
+    for line in sites.values():
+        for frame in line.split()[2:]:
+            module, offset = frame.rsplit("+", 1)
+            offsets.setdefault(module, set()).add(offset)
+    for module, wanted in offsets.items():
+        answer = subprocess.run(
+            ["addr2line", "-afise", module_path(program, module)],
+            input="\n".join(sorted(wanted)), capture_output=True, text=True)
+        at = ""
+        for line in answer.stdout.split("\n"):
+            if line.startswith("0x"):
+                at = f"{module}+{int(line, 16):x}"
+            elif "gcov" in line:
+                of_gcov.add(at)
+            elif re.match(pattern, line):
+                found.add(at)
+    return {s: line for s, line in sites.items()
+            if found & set(line.split()[2:])
+            and not of_gcov & set(line.split()[2:])}
+
+
+def name_frames(program, line):
+    """The frames of a site with names of functions."""
     names = []
     for frame in line.split()[2:]:
         module, offset = frame.rsplit("+", 1)
-        path = next((os.path.join(f, m) for f in folders for m in
-                     sorted(os.listdir(f)) if m.startswith(module)), "")
+        path = module_path(program, module)
         answer = subprocess.run(["addr2line", "-fse", path, "0x" + offset],
                                 capture_output=True, text=True).stdout.split()
         names.append(answer[0] if answer else frame)
@@ -288,6 +321,8 @@ def run_case(runner, case, options, pool, known):
         print(f"{case.name}: skipped")
         return 0, 0, 0
     sites = runner.record(case)
+    if options.of:
+        sites = sites_of(runner.program, sites, options.of)
     if options.list:
         for line in sites.values():
             print(line.split()[0], name_frames(runner.program, line))
@@ -298,7 +333,7 @@ def run_case(runner, case, options, pool, known):
         chosen = [s for s in options.site if s in sites]
     jobs = {}
     for site in chosen:
-        for sticky in "01":
+        for sticky in "0" if options.of else "01":
             if sticky == "1" and sites[site].split()[1] in (
                     "read", "pread", "fread", "close", "fclose", "unlink",
                     "unlinkat", "rmdir", "opendir", "fdopendir"):
@@ -337,6 +372,7 @@ def main():
     parser.add_argument("--case", action="append")
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--share", default="1/1")
+    parser.add_argument("--of")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--site", action="append")
     parser.add_argument("--list", action="store_true")

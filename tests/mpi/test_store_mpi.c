@@ -142,22 +142,44 @@ static void the_limit_applies_to_all_ranks_together(void **state)
   vg_store_close(s, 1);
 }
 
-/* Visible to rank 0 only, as on a local disk of one node. */
+/* Visible to rank 0 only, as on a local disk of one node. The path of rank 1 is
+ * absent, an empty folder, or the directory of another run. */
 static void a_directory_of_one_node(void **state)
 {
-  struct vg_error err = VG_ERROR_INIT;
-  struct vg_store *s;
-  char kept[256];
+  static const char other[] =
+    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=x\n";
+  char run[300], kept[256];
 
   (void)state;
   if (vg_comm_size(job) < 2) skip();
-  memcpy(kept, dir, sizeof dir);
-  if (vg_comm_rank(job) == 1) strcat(dir, "_elsewhere");
-  assert_int_equal(try_open(1, 0, 0, &s, &err), VG_ERR_IO);
-  assert_non_null(strstr(err.text, "file system that all nodes share"));
-  memcpy(dir, kept, sizeof dir);
-  assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
-  assert_int_equal(access(dir, F_OK), -1);
+  for (int k = 0; k < 3; k++) {
+    struct vg_error err = VG_ERROR_INIT;
+    struct vg_store *s;
+
+    memcpy(kept, dir, sizeof dir);
+    if (vg_comm_rank(job) == 1) {
+      strcat(dir, "_elsewhere");
+      if (k) assert_int_equal(mkdir(dir, 0777), 0);
+      snprintf(run, sizeof run, "%s/run.txt", dir);
+      if (k == 2) {
+        FILE *f = fopen(run, "w");
+
+        assert_non_null(f);
+        fputs(other, f);
+        assert_int_equal(fclose(f), 0);
+      }
+    }
+    assert_int_equal(try_open(1, 0, 0, &s, &err), VG_ERR_IO);
+    assert_non_null(strstr(err.text, "file system that all nodes share"));
+    if (vg_comm_rank(job) == 1) {
+      if (k == 2) assert_int_equal(unlink(run), 0);
+      if (k) assert_int_equal(rmdir(dir), 0);
+    }
+    memcpy(dir, kept, sizeof dir);
+    assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
+    assert_int_equal(access(dir, F_OK), -1);
+    assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
+  }
 }
 
 int main(void)

@@ -4,12 +4,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <fts.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MAX_OPS = 4000, PATH = 300, MAX_FILES = 400 };
@@ -39,38 +42,36 @@ static struct op {
 } op[MAX_OPS];
 static size_t n_op;
 
-int __real_open(const char *path, int flags, ...);
-ssize_t __real_write(int fd, const void *data, size_t n);
-ssize_t __real_pwrite(int fd, const void *data, size_t n, off_t at);
-int __real_flock(int fd, int how);
-int __real_rename(const char *a, const char *b);
-int __real_renameat2(int da, const char *a, int db, const char *b,
-                     unsigned flags);
-int __real_link(const char *a, const char *b);
-int __real_unlink(const char *a);
-int __real_openat(int at, const char *path, int flags, ...);
-int __real_unlinkat(int at, const char *a, int flags);
-int __real_mkdir(const char *a, mode_t mode);
-int __real_rmdir(const char *a);
-int __wrap_open(const char *path, int flags, ...);
-ssize_t __wrap_write(int fd, const void *data, size_t n);
-ssize_t __wrap_pwrite(int fd, const void *data, size_t n, off_t at);
-int __wrap_fsync(int fd);
-int __wrap_flock(int fd, int how);
-int __wrap_rename(const char *a, const char *b);
-int __wrap_renameat2(int da, const char *a, int db, const char *b,
-                     unsigned flags);
-int __wrap_link(const char *a, const char *b);
-int __wrap_unlink(const char *a);
-int __wrap_openat(int at, const char *path, int flags, ...);
-int __wrap_unlinkat(int at, const char *a, int flags);
-int __wrap_mkdir(const char *a, mode_t mode);
-int __wrap_rmdir(const char *a);
+/* NAME is replaced by __wrap_NAME, which may call __real_NAME. */
+#define WRAPPED(type, name, ...)                                               \
+  type __real_##name(__VA_ARGS__);                                             \
+  type __wrap_##name(__VA_ARGS__);
+
+WRAPPED(int, open, const char *path, int flags, ...)
+WRAPPED(ssize_t, write, int fd, const void *data, size_t n)
+WRAPPED(ssize_t, pwrite, int fd, const void *data, size_t n, off_t at)
+WRAPPED(int, fsync, int fd)
+WRAPPED(int, fstat, int fd, struct stat *s)
+WRAPPED(int, flock, int fd, int how)
+WRAPPED(int, rename, const char *a, const char *b)
+WRAPPED(int, renameat2, int da, const char *a, int db, const char *b,
+        unsigned flags)
+WRAPPED(int, link, const char *a, const char *b)
+WRAPPED(int, unlink, const char *a)
+WRAPPED(int, openat, int at, const char *path, int flags, ...)
+WRAPPED(int, unlinkat, int at, const char *a, int flags)
+WRAPPED(int, mkdir, const char *a, mode_t mode)
+WRAPPED(int, rmdir, const char *a)
+WRAPPED(int, close, int fd)
+WRAPPED(int, asprintf, char **text, const char *format, ...)
+WRAPPED(FTSENT *, fts_read, FTS *tree)
 
 void calls_reset(void)
 {
   while (n_op) free(op[--n_op].data);
-  calls.n = calls.fail_at = calls.fails_after = 0;
+  calls.n = calls.fail_at = calls.fails_from = 0;
+  calls.before_lock = NULL;
+  calls.before_journal = NULL;
   calls.root = NULL;
 }
 
@@ -83,11 +84,28 @@ size_t calls_recorded(void)
 static int fails(void)
 {
   ++calls.n;
-  if (!calls.fail_at || calls.n < calls.fail_at ||
-      (calls.n > calls.fail_at && !calls.fails_after))
+  if (calls.n != calls.fail_at &&
+      !(calls.fails_from && calls.n >= calls.fails_from))
     return 0;
-  errno = calls.error;
+  errno = calls.error ? calls.error : EIO;
   return 1;
+}
+
+/* -1 with this errno, or 0 if it is 0. */
+static int refuses(int error)
+{
+  if (error) errno = error;
+  return error ? -1 : 0;
+}
+
+static void path_of(int fd, char path[2 * PATH])
+{
+  char link[64];
+  ssize_t n;
+
+  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+  n = readlink(link, path, 2 * PATH - 1);
+  path[n > 0 ? n : 0] = 0;
 }
 
 /* --- recording ----------------------------------------------------------- */
@@ -119,7 +137,7 @@ static ino_t inode(int fd)
 {
   struct stat s;
 
-  return fstat(fd, &s) ? 0 : s.st_ino;
+  return __real_fstat(fd, &s) ? 0 : s.st_ino;
 }
 
 static int recorded(int result, enum kind kind, const char *a, const char *b)
@@ -149,7 +167,7 @@ int __wrap_open(const char *path, int flags, ...)
   return fd;
 }
 
-/* Of the calls with a folder, those for locks are counted and recorded. */
+/* Of the calls with a folder, those for locks are recorded. */
 static int is_lock(int at, const char *path)
 {
   size_t n = strlen(path);
@@ -167,8 +185,8 @@ int __wrap_openat(int at, const char *path, int flags, ...)
     mode = va_arg(args, mode_t);
     va_end(args);
   }
-  return is_lock(at, path) ? __wrap_open(path, flags, mode)
-                           : __real_openat(at, path, flags, mode);
+  if (is_lock(at, path)) return __wrap_open(path, flags, mode);
+  return fails() ? -1 : __real_openat(at, path, flags, mode);
 }
 
 static void record_write(int fd, const void *data, ssize_t n, off_t at)
@@ -188,7 +206,7 @@ ssize_t __wrap_write(int fd, const void *data, size_t n)
   off_t at = lseek(fd, 0, SEEK_CUR);
   ssize_t put;
 
-  if (fails()) return -1;
+  if (fails()) return calls.error ? -1 : 0;
   put = __real_write(fd, data, n);
   record_write(fd, data, put, at);
   return put;
@@ -198,7 +216,7 @@ ssize_t __wrap_pwrite(int fd, const void *data, size_t n, off_t at)
 {
   ssize_t put;
 
-  if (fails()) return -1;
+  if (fails()) return calls.error ? -1 : 0;
   put = __real_pwrite(fd, data, n, at);
   record_write(fd, data, put, at);
   return put;
@@ -206,20 +224,19 @@ ssize_t __wrap_pwrite(int fd, const void *data, size_t n, off_t at)
 
 int __wrap_fsync(int fd)
 {
-  char link[64], path[2 * PATH], here[PATH];
+  char path[2 * PATH], here[PATH];
   struct stat s;
-  ssize_t n;
   struct op *o;
 
   if (fails()) return -1;
-  if (!calls.root || fstat(fd, &s)) return 0;
+  if (__real_fstat(fd, &s)) return 0;
+  if (S_ISDIR(s.st_mode) && refuses(calls.no_folder_sync)) return -1;
+  if (!calls.root) return 0;
   if (!S_ISDIR(s.st_mode)) {
     if ((o = record(SYNC, NULL, NULL))) o->ino = s.st_ino;
     return 0;
   }
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-  n = readlink(link, path, sizeof path - 1);
-  path[n > 0 ? n : 0] = 0;
+  path_of(fd, path);
   if (getcwd(here, sizeof here) && !strncmp(path, here, strlen(here)))
     record(SYNC_FOLDER, path + strlen(here) + 1, NULL);
   return 0;
@@ -227,39 +244,41 @@ int __wrap_fsync(int fd)
 
 int __wrap_flock(int fd, int how)
 {
-  if (fails()) return -1;
-  if (!calls.no_lock) return __real_flock(fd, how);
-  errno = ENOLCK;
-  return -1;
+  char path[2 * PATH];
+
+  if (fails() || refuses(calls.no_lock)) return -1;
+  path_of(fd, path);
+  if (calls.before_lock) calls.before_lock(path);
+  return __real_flock(fd, how);
 }
 
 int __wrap_rename(const char *a, const char *b)
 {
+  const char *name = strrchr(b, '/');
+
   if (fails()) return -1;
+  if (calls.before_journal && name && !strcmp(name, "/journal"))
+    calls.before_journal();
   return recorded(__real_rename(a, b), RENAME, a, b);
 }
 
 int __wrap_renameat2(int da, const char *a, int db, const char *b,
                      unsigned flags)
 {
-  if (fails()) return -1;
-  if (!calls.no_exchange)
-    return recorded(__real_renameat2(da, a, db, b, flags), EXCHANGE, a, b);
-  errno = EINVAL;
-  return -1;
+  if (fails() || refuses(calls.no_exchange)) return -1;
+  return recorded(__real_renameat2(da, a, db, b, flags), EXCHANGE, a, b);
 }
 
 int __wrap_link(const char *a, const char *b)
 {
-  if (fails()) return -1;
-  if (!calls.no_link) return recorded(__real_link(a, b), LINK, a, b);
-  errno = EPERM;
-  return -1;
+  if (fails() || refuses(calls.no_link)) return -1;
+  return recorded(__real_link(a, b), LINK, a, b);
 }
 
 int __wrap_unlinkat(int at, const char *a, int flags)
 {
-  return is_lock(at, a) ? __wrap_unlink(a) : __real_unlinkat(at, a, flags);
+  if (is_lock(at, a)) return __wrap_unlink(a);
+  return fails() ? -1 : __real_unlinkat(at, a, flags);
 }
 
 int __wrap_unlink(const char *a)
@@ -280,6 +299,67 @@ int __wrap_mkdir(const char *a, mode_t mode)
 int __wrap_rmdir(const char *a)
 {
   return fails() ? -1 : recorded(__real_rmdir(a), RMDIR, a, NULL);
+}
+
+/* --- calls that are not recorded ------------------------------------------ */
+
+#define FAILS(type, name, parameters, arguments, failure)                      \
+  type __real_##name parameters;                                               \
+  type __wrap_##name parameters;                                               \
+  type __wrap_##name parameters                                                \
+  {                                                                            \
+    return fails() ? failure : __real_##name arguments;                        \
+  }
+
+FAILS(int, ftruncate, (int fd, off_t n), (fd, n), -1)
+FAILS(int, lstat, (const char *path, struct stat *s), (path, s), -1)
+FAILS(int, fstat, (int fd, struct stat *s), (fd, s), -1)
+FAILS(int, kill, (pid_t process, int signal), (process, signal), -1)
+FAILS(int, fstatat, (int at, const char *path, struct stat *s, int flags),
+      (at, path, s, flags), -1)
+FAILS(ssize_t, getdents64, (int fd, void *to, size_t n), (fd, to, n), -1)
+FAILS(FILE *, fopen, (const char *path, const char *how), (path, how), NULL)
+FAILS(int, ferror, (FILE * f), (f), 1)
+FAILS(FTS *, fts_open,
+      (char *const *path, int how,
+       int (*order)(const FTSENT **, const FTSENT **)),
+      (path, how, order), NULL)
+FAILS(char *, strdup, (const char *text), (text), NULL)
+FAILS(FILE *, vg_text_open, (char **text, size_t *n), (text, n), NULL)
+FAILS(int, vg_reserve, (void *block, size_t *cap, size_t need, size_t size),
+      (block, cap, need, size), -1)
+FAILS(struct tm *, localtime_r, (const time_t *t, struct tm *to), (t, to), NULL)
+
+/* A failed close has closed the file. */
+int __wrap_close(int fd)
+{
+  int fault = fails(), error = errno, result = __real_close(fd);
+
+  errno = error;
+  return fault ? -1 : result;
+}
+
+int __wrap_asprintf(char **text, const char *format, ...)
+{
+  va_list args;
+  int n;
+
+  if (fails()) return -1;
+  va_start(args, format);
+  n = vasprintf(text, format, args);
+  va_end(args);
+  return n;
+}
+
+/* A file or folder that cannot be looked up. */
+FTSENT *__wrap_fts_read(FTS *tree)
+{
+  FTSENT *e = __real_fts_read(tree);
+
+  if (!e || !fails()) return e;
+  e->fts_errno = errno;
+  e->fts_info = e->fts_info == FTS_F ? FTS_NS : FTS_DNR;
+  return e;
 }
 
 /* --- replay -------------------------------------------------------------- */

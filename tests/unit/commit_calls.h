@@ -1,20 +1,23 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* The file calls of run/commit in test_commit: the linker replaces open(2),
- * write(2), ... by functions that count each call, fail the requested one, and
- * record all of them for a replay after a power loss. fsync(2) does nothing. */
+/* The calls of run/commit for files and memory in test_commit: the linker
+ * replaces open(2), write(2), ... by functions that count each call, fail the
+ * requested one, and record those that change files for a replay after a power
+ * loss. fsync(2) does nothing. */
 #ifndef VG_TESTS_COMMIT_CALLS_H
 #define VG_TESTS_COMMIT_CALLS_H
 
 #include <stddef.h>
 
 struct calls {
-  long n;           /* Number of calls since calls_reset. */
-  long fail_at;     /* The call, from 1, that fails; 0: none. */
-  int fails_after;  /* 1: all later calls fail, too. */
-  int error;        /* errno of these calls. */
-  int no_link;      /* 1: a file system without hard links, */
-  int no_exchange;  /* without RENAME_EXCHANGE, */
-  int no_lock;      /* without flock. */
+  long n;          /* Number of calls since calls_reset. */
+  long fail_at;    /* The call, from 1, that fails; 0: none. */
+  long fails_from; /* All calls from this one on fail; 0: none. */
+  int error;       /* errno of these calls; 0: writes take no byte. */
+  void (*before_lock)(const char *path); /* Called by flock. */
+  void (*before_journal)(void);          /* Before the journal is named so. */
+  /* errno: a file system without hard links, RENAME_EXCHANGE, locks or fsync of
+   * folders. They stay after calls_reset. */
+  int no_link, no_exchange, no_lock, no_folder_sync;
   const char *root; /* Folder whose calls are recorded; NULL: none. */
 };
 extern struct calls calls;

@@ -3,6 +3,7 @@
  * does. */
 #define _GNU_SOURCE
 #include <errno.h>
+#include <fcntl.h>
 #include <fts.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -252,10 +254,15 @@ static void recovers(const char *root, const struct states *is, unsigned seed,
 }
 
 /* The kinds of file systems. */
-static void set_system(int k)
+static void set_system(unsigned k)
 {
-  calls.no_link = k & 1;
-  calls.no_exchange = k & 2;
+  static const int link[] = { EPERM, ENOSYS, EOPNOTSUPP, EMLINK, EACCES };
+  static const int exchange[] = { EINVAL, ENOSYS, EOPNOTSUPP };
+  static const int folder_sync[] = { 0, EINVAL, ENOSYS, EOPNOTSUPP, EBADF };
+
+  calls.no_link = k % 2 ? link[k / 2 % 5] : 0;
+  calls.no_exchange = k / 2 % 2 ? exchange[k / 4 % 3] : 0;
+  calls.no_folder_sync = folder_sync[k % 5];
 }
 
 /* --- every call fails ---------------------------------------------------- */
@@ -263,7 +270,9 @@ static void set_system(int k)
 /* One call fails: the status tells which files are there. */
 static int one_fails(const struct set *s, const struct states *is, long at)
 {
-  static const int error[] = { EIO, ENOSPC, EACCES };
+  static const int error[] = {
+    EIO, ENOSPC, EACCES, EINTR, 0, EOPNOTSUPP, EPERM
+  };
   struct vg_error err = VG_ERROR_INIT;
   int now, went_on;
   vg_status st;
@@ -271,7 +280,7 @@ static int one_fails(const struct set *s, const struct states *is, long at)
   make_old(s, ROOT);
   calls_reset();
   calls.fail_at = at;
-  calls.error = error[at % 3];
+  calls.error = error[(at + (long)s->seed) % 7];
   st = run(s, ROOT, &err);
   went_on = calls.n >= at;
   calls_reset();
@@ -284,10 +293,10 @@ static int one_fails(const struct set *s, const struct states *is, long at)
   return went_on;
 }
 
-/* All calls fail from one on, as on a disk that is gone; and again during the
- * recovery. */
+/* One call fails, and all calls from another one on, as on a disk that is gone;
+ * and again during the recovery. */
 static void all_fail(const struct set *s, const struct states *is, long at,
-                     long again)
+                     long from, long again)
 {
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
@@ -295,13 +304,14 @@ static void all_fail(const struct set *s, const struct states *is, long at,
   make_old(s, ROOT);
   calls_reset();
   calls.fail_at = at;
-  calls.fails_after = 1;
+  calls.fails_from = from;
   calls.error = EROFS;
   st = run(s, ROOT, &err);
+  if (st < 0) assert_true(*err.text);
   for (int k = 0; again && k < 2; k++) {
     calls_reset();
     calls.fail_at = again + 3 * k;
-    calls.fails_after = !k;
+    calls.fails_from = k ? 0 : again + at % 7;
     calls.error = EIO;
     (void)recover(ROOT, NULL);
   }
@@ -316,12 +326,13 @@ static void every_call_fails(void **state)
     struct set s = make_set(seed);
     struct states is;
 
-    set_system((int)seed % 4);
+    set_system(seed);
     is = states_of(&s);
     for (long at = 1; one_fails(&s, &is, at); at++) {
-      all_fail(&s, &is, at, 0);
-      for (long again = 1; again < 40; again += 13)
-        all_fail(&s, &is, at, again + (at + (long)seed) % 13);
+      all_fail(&s, &is, at, at, 0);
+      for (long gap = 2; gap < 12; gap++)
+        all_fail(&s, &is, at, at + gap, gap % 3 ? 0 : 7 * at % 53);
+      all_fail(&s, &is, at, at, 1 + (5 * at + (long)seed) % 53);
     }
     free_states(&is);
   }
@@ -367,7 +378,8 @@ static void power_is_lost(void **state)
     struct states is;
     size_t done;
 
-    set_system((int)seed % 4);
+    set_system(seed);
+    calls.no_folder_sync = 0; /* only certain names are kept */
     is = states_of(&s);
     make_old(&s, ROOT);
     calls_reset();
@@ -434,7 +446,8 @@ static void a_second_process_is_refused(void **state)
   (void)state;
   snprintf(process, sizeof process, "process %ld, started 2", (long)getpid());
   make_old(&none, ROOT);
-  for (calls.no_lock = 0; calls.no_lock < 2; calls.no_lock++) {
+  for (int k = 0; k < 2; k++) {
+    calls.no_lock = k ? ENOLCK : 0;
     c = open_root();
     assert_int_equal(vg_commit_open(ROOT, NAME, NULL, NULL, &second, &err),
                      VG_ERR_INPUT);
@@ -480,7 +493,8 @@ static void remains_are_removed(void **state)
 
   (void)state;
   make_old(&none, ROOT);
-  for (calls.no_lock = 0; calls.no_lock < 2; calls.no_lock++) {
+  for (int k = 0; k < 2; k++) {
+    calls.no_lock = k ? ENOLCK : 0;
     leave_behind(NAME);
     leave_behind("second");
     *told = 0;
@@ -508,7 +522,7 @@ static void another_host_without_locks(void **state)
   make_old(&none, ROOT);
   leave_behind(NAME);
   put(ROOT "/" HIDDEN "/lock", "host elsewhere, process 1, started then\n");
-  calls.no_lock = 1;
+  calls.no_lock = ENOLCK;
   assert_int_equal(vg_commit_open(ROOT, NAME, NULL, NULL, &c, &err),
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "host elsewhere, process 1"));
@@ -528,8 +542,7 @@ static void interrupted_moves_are_noted(void **state)
   for (long at = 1; at < 200; at++) {
     make_old(&s, ROOT);
     calls_reset();
-    calls.fail_at = at;
-    calls.fails_after = 1;
+    calls.fails_from = at;
     calls.error = EIO;
     (void)run(&s, ROOT, NULL);
     calls_reset();
@@ -543,6 +556,176 @@ static void interrupted_moves_are_noted(void **state)
   assert_true(completed > 0);
   (void)restored;
   free_states(&is);
+}
+
+/* --- locks ---------------------------------------------------------------- */
+
+static int n_replaced, is_by_link;
+
+/* The lock file is replaced between open and flock, by a file or by a symbolic
+ * link to one on another disk. */
+static void replace(const char *path)
+{
+  if (n_replaced++) return;
+  put(VG_TMP_DIR "/lock of test_commit", "");
+  put(ROOT "/lock", "");
+  if (is_by_link) {
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(symlink(VG_TMP_DIR "/lock of test_commit", path), 0);
+  } else assert_int_equal(rename(ROOT "/lock", path), 0);
+}
+
+static void a_replaced_lock_is_taken_again(void **state)
+{
+  struct vg_commit c;
+
+  (void)state;
+  for (is_by_link = 0; is_by_link < 2; is_by_link++) {
+    make_old(&(struct set){ .n = 0 }, ROOT);
+    calls_reset();
+    n_replaced = 0;
+    calls.before_lock = replace;
+    assert_int_equal(vg_commit_open(ROOT, NAME, NULL, NULL, &c, NULL), VG_OK);
+    assert_int_equal(n_replaced, 2);
+    vg_commit_close(&c);
+  }
+  calls_reset();
+  unlink(VG_TMP_DIR "/lock of test_commit");
+}
+
+static void a_lock_without_a_name(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_commit c;
+  int fd;
+
+  (void)state;
+  make_old(&(struct set){ .n = 0 }, ROOT);
+  calls_reset();
+  assert_int_equal(mkdir(ROOT "/" HIDDEN, 0777), 0);
+  put(ROOT "/" HIDDEN "/lock", "");
+  fd = open(ROOT "/" HIDDEN "/lock", O_RDWR);
+  assert_int_equal(flock(fd, LOCK_EX), 0);
+  assert_int_equal(vg_commit_open(ROOT, NAME, NULL, NULL, &c, &err),
+                   VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "(an unknown process)"));
+  close(fd);
+}
+
+/* Remains are removed, or stay whole, whatever fails. */
+static void every_call_of_a_sweep_fails(void **state)
+{
+  static const int error[] = { EIO, ENOENT, EPERM };
+  struct vg_commit c;
+  long n = 1;
+
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    for (long at = 1; at <= n; at++) {
+      make_old(&(struct set){ .n = 0 }, ROOT);
+      calls_reset();
+      calls.no_lock = k % 2 ? ENOLCK : 0;
+      leave_behind("second");
+      assert_int_equal(mkdir(ROOT "/.vanguard-empty", 0777), 0);
+      c = open_root();
+      calls.n = 0;
+      calls.fail_at = at;
+      calls.error = error[k / 2];
+      vg_commit_sweep(ROOT, &c, NULL, NULL);
+      if (calls.n > n) n = calls.n;
+      calls_reset();
+      assert_true(exists(c.fresh));
+      assert_true(exists(ROOT "/other"));
+      vg_commit_close(&c);
+      vg_commit_sweep(ROOT, NULL, NULL, NULL);
+      /* Without locks, this process may hold it. */
+      if (!calls.no_lock && exists(ROOT "/.vanguard-second/lock"))
+        fail_msg("call %ld, error %d: remains", at, error[k / 2]);
+    }
+  }
+  calls.no_lock = 0;
+}
+
+/* --- moves ---------------------------------------------------------------- */
+
+static void vanish(void)
+{
+  vg_tree_remove(ROOT "/sub");
+  assert_int_equal(mkdir(ROOT "/sub", 0777), 0);
+}
+
+/* Another program removes the old files before they are moved. */
+static void old_files_vanish(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_commit c;
+
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    set_system((unsigned)k);
+    make_old(&(struct set){ .n = 0 }, ROOT);
+    put(ROOT "/sub/f", "old");
+    assert_int_equal(mkdir(ROOT "/sub/d", 0777), 0);
+    c = open_root();
+    calls.before_journal = vanish;
+    put(in(c.fresh, "f"), "new");
+    assert_int_equal(mkdir(in(c.fresh, "d"), 0777), 0);
+    vg_commit_add(&c, VG_MOVE_FILE, "f", "sub/f", NULL);
+    vg_commit_add(&c, VG_MOVE_FOLDER, "d", "sub/d", NULL);
+    if (vg_commit_run(&c, &err) < 0) fail_msg("%s", err.text);
+    vg_commit_close(&c);
+    assert_true(exists(ROOT "/sub/f") && exists(ROOT "/sub/d"));
+    assert_false(exists(ROOT "/" HIDDEN));
+  }
+  calls_reset();
+  set_system(0);
+}
+
+/* The journal of moves to be undone, of which the disk has nothing. */
+static void nothing_to_undo(void **state)
+{
+  struct vg_journal j = { 0 };
+
+  (void)state;
+  make_old(&(struct set){ .n = 0 }, ROOT);
+  calls_reset();
+  leave_behind(NAME);
+  for (int had_old = 0; had_old < 2; had_old++)
+    for (int kind = VG_MOVE_FILE; kind <= VG_MOVE_REMOVE; kind++) {
+      vg_journal_add(&j, (enum vg_move_kind)kind, "a", "b", NULL);
+      j.move[j.n - 1].had_old = had_old;
+    }
+  assert_int_equal(vg_journal_write(&j, ROOT "/" HIDDEN "/undo", NULL), VG_OK);
+  vg_journal_release(&j);
+  assert_int_equal(recover(ROOT, NULL), VG_OK);
+  assert_false(exists(ROOT "/" HIDDEN) || exists(ROOT "/b"));
+  assert_true(exists(ROOT "/other"));
+}
+
+/* The target is an absolute path, and the folder is the current one. */
+static void absolute_targets(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_commit c = { .hidden = NULL };
+  char here[400], to[440];
+
+  (void)state;
+  vg_commit_close(&c); /* not open */
+  make_old(&(struct set){ .n = 0 }, ROOT);
+  calls_reset();
+  assert_non_null(getcwd(here, sizeof here));
+  assert_int_equal(chdir(ROOT), 0);
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(vg_commit_open(".", NAME, NULL, NULL, &c, &err), VG_OK);
+    put(in(c.fresh, "x"), "new");
+    snprintf(to, sizeof to, "%s/" ROOT "/far", here);
+    vg_commit_add(&c, VG_MOVE_FILE, "x", k ? "sub" : to, NULL);
+    assert_int_equal(vg_commit_run(&c, &err), k ? VG_ERR_IO : VG_OK);
+    vg_commit_close(&c);
+  }
+  assert_true(exists("far"));
+  assert_memory_equal(err.text, "sub: a folder exists", 20);
+  assert_int_equal(chdir(here), 0);
 }
 
 /* --- the journal --------------------------------------------------------- */
@@ -589,19 +772,44 @@ static void journals(void **state)
 /* A damaged journal: nothing is removed, and the message names it. */
 static void damaged_journals_are_refused(void **state)
 {
+  static const char *const text[] = {
+    "vanguard commit 1\n0 7\nend\n",
+    "vanguard commit 2\nend\n-------",
+    "vanguard",
+    "vanguard commit 1\n-1 0 0 1 1\na\nb\nend\n",
+    "vanguard commit 1\n3 0 0 1 1\na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 1 1 \na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 99 1\na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 1 99\na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 1 6\na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 2 1\na\nb\nend\n",
+    "vanguard commit 1\n0 0 0 1 2\na\nb\nend\n",
+  };
   struct vg_error err = VG_ERROR_INIT;
+  struct vg_journal j = { 0 };
 
   (void)state;
   make_old(&(struct set){ .n = 0 }, ROOT);
   leave_behind(NAME);
-  put(ROOT "/" HIDDEN "/journal", "vanguard commit 1\n0 7\nend\n");
-  assert_int_equal(recover(ROOT, &err), VG_ERR_FORMAT);
-  assert_non_null(strstr(err.text, HIDDEN "/journal: is damaged"));
-  assert_true(exists(ROOT "/" HIDDEN "/new/x"));
-  *told = 0;
-  vg_commit_sweep(ROOT, NULL, tell, NULL);
-  assert_non_null(strstr(told, "is damaged"));
-  assert_true(exists(ROOT "/" HIDDEN "/new/x"));
+  for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
+    put(ROOT "/" HIDDEN "/journal", text[i]);
+    assert_int_equal(recover(ROOT, &err), VG_ERR_FORMAT);
+    assert_non_null(strstr(err.text, HIDDEN "/journal: is damaged"));
+    assert_true(exists(ROOT "/" HIDDEN "/new/x"));
+    *told = 0;
+    vg_commit_sweep(ROOT, NULL, tell, NULL);
+    assert_non_null(strstr(told, "is damaged"));
+    assert_true(exists(ROOT "/" HIDDEN "/new/x"));
+  }
+  for (int k = 0; k < 2; k++) { /* a zero byte in a path */
+    FILE *f = fopen(ROOT "/journal", "w");
+
+    fwrite(k ? "vanguard commit 1\n0 0 0 1 1\na\n\0\nend\n"
+             : "vanguard commit 1\n0 0 0 1 1\n\0\nb\nend\n",
+           1, 37, f);
+    fclose(f);
+    assert_int_equal(vg_journal_read(ROOT "/journal", &j, &err), VG_ERR_FORMAT);
+  }
   vg_tree_remove(ROOT);
 }
 
@@ -624,6 +832,12 @@ int main(void)
     cmocka_unit_test(remains_are_removed),
     cmocka_unit_test(another_host_without_locks),
     cmocka_unit_test(interrupted_moves_are_noted),
+    cmocka_unit_test(a_replaced_lock_is_taken_again),
+    cmocka_unit_test(a_lock_without_a_name),
+    cmocka_unit_test(every_call_of_a_sweep_fails),
+    cmocka_unit_test(old_files_vanish),
+    cmocka_unit_test(nothing_to_undo),
+    cmocka_unit_test(absolute_targets),
     cmocka_unit_test(journals),
     cmocka_unit_test(damaged_journals_are_refused),
   };

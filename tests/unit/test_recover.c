@@ -350,6 +350,17 @@ static void lost_faces_are_counted(void **state)
   vg_mesh_release(&m);
 }
 
+static void are_same(const struct vg_tets *a, const struct vg_tets *b)
+{
+  assert_int_equal(a->n_cell, b->n_cell);
+  assert_int_equal(a->n_point, b->n_point);
+  assert_memory_equal(a->flag, b->flag, a->n_cell);
+  for (size_t c = 0; c < a->n_cell; c++)
+    if (!(a->flag[c] & VG_DEAD))
+      assert_memory_equal(a->cell[c].v, b->cell[c].v, sizeof a->cell[c].v);
+  assert_memory_equal(a->x, b->x, a->n_point * sizeof *a->x);
+}
+
 static void the_same_bytes_again(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -364,16 +375,75 @@ static void the_same_bytes_again(void **state)
     assert_int_equal(vg_boundary_tets(m.n_point, POINT(&m), m.n_tri, TRI(&m),
                                       NULL, &t[k], &r[k], NULL),
                      VG_OK);
-  assert_int_equal(t[0].n_cell, t[1].n_cell);
-  assert_int_equal(t[0].n_point, t[1].n_point);
-  assert_memory_equal(t[0].flag, t[1].flag, t[0].n_cell);
-  for (size_t c = 0; c < t[0].n_cell; c++)
-    if (!(t[0].flag[c] & VG_DEAD))
-      assert_memory_equal(t[0].cell[c].v, t[1].cell[c].v,
-                          sizeof t[0].cell[c].v);
-  assert_memory_equal(t[0].x, t[1].x, t[0].n_point * sizeof *t[0].x);
+  are_same(&t[0], &t[1]);
   vg_tets_release(&t[0]);
   vg_tets_release(&t[1]);
+  vg_mesh_release(&m);
+}
+
+/* --- allocations that fail ------------------------------------------------ */
+
+static long n_alloc, fails_at; /* 0: none */
+
+static int fails(void)
+{
+  return ++n_alloc == fails_at;
+}
+
+void *__real_vg_alloc(size_t n, size_t size);
+void *__real_vg_calloc(size_t n, size_t size);
+int __real_vg_reserve(void *block, size_t *cap, size_t need, size_t size);
+void *__wrap_vg_alloc(size_t n, size_t size);
+void *__wrap_vg_calloc(size_t n, size_t size);
+int __wrap_vg_reserve(void *block, size_t *cap, size_t need, size_t size);
+
+void *__wrap_vg_alloc(size_t n, size_t size)
+{
+  return fails() ? NULL : __real_vg_alloc(n, size);
+}
+
+void *__wrap_vg_calloc(size_t n, size_t size)
+{
+  return fails() ? NULL : __real_vg_calloc(n, size);
+}
+
+int __wrap_vg_reserve(void *block, size_t *cap, size_t need, size_t size)
+{
+  return fails() ? -1 : __real_vg_reserve(block, cap, need, size);
+}
+
+/* Without memory there is an error, or the same cells after a repetition, and
+ * no pocket is closed in another way. */
+static void every_allocation_fails(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_tets first = VG_TETS_INIT;
+  struct vg_boundary_report r;
+  long n_failed = 0, n;
+
+  (void)state;
+  needs_tetgen();
+  twisted_prism(&m, 0.5);
+  n_alloc = 0;
+  for (fails_at = 0; fails_at <= n_alloc; fails_at++) {
+    struct vg_tets t = VG_TETS_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+    vg_status st;
+
+    n = n_alloc;
+    n_alloc = 0;
+    st = vg_boundary_tets(m.n_point, POINT(&m), m.n_tri, TRI(&m), NULL,
+                          fails_at ? &t : &first, &r, &err);
+    if (st != VG_OK && st != VG_ERR_MEMORY)
+      fail_msg("allocation %ld: status %d, %s", fails_at, st, err.text);
+    n_failed += st < 0;
+    if (st == VG_OK && fails_at) are_same(&t, &first);
+    vg_tets_release(&t);
+    if (n > n_alloc) n_alloc = n;
+  }
+  assert_true(n_failed > 100);
+  fails_at = 0;
+  vg_tets_release(&first);
   vg_mesh_release(&m);
 }
 
@@ -543,6 +613,7 @@ int main(void)
     cmocka_unit_test(a_body_with_turned_diagonals),
     cmocka_unit_test(lost_faces_are_counted),
     cmocka_unit_test(the_same_bytes_again),
+    cmocka_unit_test(every_allocation_fails),
     cmocka_unit_test(an_open_surface),
     cmocka_unit_test(one_triangle_turned_over),
     cmocka_unit_test(unbounded_fluid),

@@ -74,6 +74,26 @@ static void reads_both_orders(void **state)
   }
 }
 
+/* The first line is a title, whatever it looks like. */
+static void reads_titles_like_numbers(void **state)
+{
+  static const char *const title[] = { "nan", "Inf", "0012 64", "0012",
+                                       "2412" };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof title / sizeof *title; i++) {
+    struct vg_section s = VG_SECTION_INIT;
+    char text[100];
+
+    snprintf(text, sizeof text, "%s\n1 0\n0.5 0.1\n0 0\n0.5 -0.1\n1 0\n",
+             title[i]);
+    accept(text, &s);
+    same_points(&s, 4, kite);
+    assert_string_equal(s.element[0].name, title[i]);
+    vg_section_release(&s);
+  }
+}
+
 /* Without a closing point there is a blunt trailing edge, and both its points
  * remain. */
 static void keeps_a_blunt_edge(void **state)
@@ -118,6 +138,8 @@ static void refuses_lines(void **state)
   refuse("a\n1 0\n0.5\n", VG_ERR_FORMAT, "wing.dat:3:", "two finite");
   refuse("a\n1,0\n0.5,1\n", VG_ERR_FORMAT, "wing.dat:2:", "'1,0'");
   refuse("a\n1 0 0\n0.5 0 1\n", VG_ERR_FORMAT, "wing.dat:2:", "third word '0'");
+  refuse("00.5 0.1\n1,0\n", VG_ERR_FORMAT, "wing.dat:2:", "'1,0'");
+  refuse("nan 1\n1 0\n", VG_ERR_FORMAT, "wing.dat:1:", "'nan 1'");
   refuse("only a title\n", VG_ERR_FORMAT, "wing.dat", "no lines");
 }
 
@@ -171,6 +193,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_both_orders),
+    cmocka_unit_test(reads_titles_like_numbers),
     cmocka_unit_test(keeps_a_blunt_edge),
     cmocka_unit_test(reads_several_elements),
     cmocka_unit_test(refuses_lines),

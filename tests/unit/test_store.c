@@ -237,6 +237,37 @@ static void a_damaged_record_is_ignored(void **state)
   vg_store_close(s, 1);
 }
 
+/* Folders and files of others where the store has its own. */
+static void strange_files(void **state)
+{
+  struct vg_store *s = opened(1, 0);
+  char path[600], *slash;
+
+  (void)state;
+  vg_store_keep(s, key_of(1), 3, "abc");
+  snprintf(path, sizeof path, "%sx", record_path());
+  write_file(path, "x", 1);
+  vg_store_close(s, 0);
+  s = opened(1, 1);
+  assert_int_equal(access(path, F_OK), 0); /* is not one of its files */
+  assert_int_equal(unlink(path), 0);
+  path[strlen(path) - 1] = 0;
+  assert_int_equal(unlink(path), 0);
+  assert_int_equal(mkdir(path, 0777), 0);
+  assert_false(is_there(s, 1, 3, "abc"));
+  assert_int_equal(report_of(s).n_damaged, 1);
+  assert_int_equal(rmdir(path), 0);
+  slash = strrchr(path, '/');
+  *slash = 0;
+  assert_int_equal(rmdir(path), 0);
+  write_file(path, "x", 1);
+  assert_false(is_there(s, 1, 3, "abc"));
+  assert_int_equal(report_of(s).n_damaged, 1);
+  assert_int_equal(unlink(path), 0);
+  vg_store_close(s, 1);
+  vg_store_close(NULL, 1);
+}
+
 /* A complete record, but under the name of another. */
 static void a_record_with_a_different_key(void **state)
 {
@@ -326,17 +357,23 @@ static void nothing_to_resume(void **state)
 
 static void a_damaged_note(void **state)
 {
+  static char long_line[400] =
+    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=";
   static const char *const text[] = {
     "",
     "\n",
     "vanguard run 1\n",
     "vanguard run 1\njob=0123\nwhat=x\n",
     "vanguard run 2\njob=00112233445566778899aabbccddeeff\nwhat=x\n",
-    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=x"
+    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=x",
+    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhere=x\n",
+    long_line
   };
   struct vg_store_options o = options_of(1, 1);
 
   (void)state;
+  memset(long_line + strlen(long_line), 'x', 300);
+  strcat(long_line, "\n");
   vg_store_close(opened(1, 0), 0);
   for (size_t k = 0; k < sizeof text / sizeof *text; k++) {
     write_file(RUN_DIR "/run.txt", text[k], strlen(text[k]));
@@ -366,8 +403,38 @@ static void an_unwritable_path(void **state)
   o.dir = RUN_DIR "/below/it";
   REFUSED(&o, VG_ERR_IO, RUN_DIR, "Not a directory", "choose another");
   assert_int_equal(unlink(RUN_DIR), 0);
+  o.dir = "";
+  REFUSED(&o, VG_ERR_IO, "No such file or directory", "choose another");
   o.dir = "/proc/self/store";
   REFUSED(&o, VG_ERR_IO, "/proc/self/store", "choose another");
+}
+
+/* Settings that cannot be compared: the refusal has none. */
+static void settings_that_are_lost(void **state)
+{
+  struct vg_store_options o = options_of(1, 0);
+  struct vg_store *s = NULL;
+  struct vg_error err;
+  static char many[1 << 20];
+
+  (void)state;
+  o.what = NULL;
+  o.settings = "a=1";
+  assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
+  vg_store_keep(s, key_of(1), 1, "x");
+  vg_store_close(s, 0);
+  o = options_of(2, 1);
+  o.settings = "no value\na=1\nb=2\na=3";
+  REFUSED(&o, VG_ERR_INPUT, "b was not known, is 2; a was 1, is 3; restore");
+  write_file(RUN_DIR "/run.settings", "", 0);
+  REFUSED(&o, VG_ERR_INPUT, "a was not known, is 1; b was not known");
+  memset(many, 'x', sizeof many);
+  write_file(RUN_DIR "/run.settings", many, sizeof many);
+  for (int k = 0; k < 2; k++) {
+    if (k) assert_int_equal(unlink(RUN_DIR "/run.settings"), 0);
+    assert_int_equal(vg_store_open(NULL, &o, &s, &err), VG_ERR_INPUT);
+    assert_null(strstr(err.text, "was not known"));
+  }
 }
 
 /* A refusal names the settings that differ, and no others. */
@@ -486,8 +553,13 @@ static void a_limit(void **state)
     assert_true(is_there(s, 2, sizeof data, data));
     assert_false(is_there(s, 3, sizeof data, data));
     vg_store_keep(s, key_of(12), SIZE_MAX, data);
-    vg_store_close(s, resumed);
+    vg_store_close(s, 0);
   }
+  o.limit = 100; /* less than there is */
+  assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
+  vg_store_keep(s, key_of(13), 1, data);
+  assert_non_null(strstr(report_of(s).stopped, "limit of 100 bytes"));
+  vg_store_close(s, 1);
 }
 
 static int count_one(const char *path, const struct stat *s, int flag,
@@ -561,6 +633,7 @@ int main(void)
     cmocka_unit_test(digest_depends_on_every_bit),
     TEST(kept_and_found),
     TEST(a_damaged_record_is_ignored),
+    TEST(strange_files),
     TEST(a_record_with_a_different_key),
     TEST(several_threads),
     TEST(another_run_is_refused),
@@ -569,6 +642,7 @@ int main(void)
     TEST(a_damaged_note),
     TEST(records_without_a_note),
     TEST(an_unwritable_path),
+    TEST(settings_that_are_lost),
     TEST(settings_side_by_side),
     TEST(folders_above_and_other_files),
     TEST(one_run_at_a_time),

@@ -48,20 +48,34 @@ enum call {
   ALLOC,
   CALLOC,
   MUTEX,
+  SUM,
+  AGREE,
   N_CALL
 };
 
+enum { HALF = 0, NONE = -1 };
+
 static struct {
   enum call what;
-  long n[N_CALL]; /* calls since the start */
-  long at;        /* the call that fails, from 1; 0: no call */
-  int error;      /* errno; 0: half of the bytes, or the end */
+  long n[N_CALL];      /* calls since the start */
+  long at;             /* the call that fails, from 1; 0: no call */
+  int is_lasting;      /* 1: all calls for files fail from it on */
+  int error;           /* errno; HALF of the bytes, NONE of them */
+  struct vg_store *in; /* a store for which another thread fails, too */
 } faults;
+
+static void fail_again(void);
 
 static int fails(enum call what)
 {
   faults.n[what]++;
+  if (faults.is_lasting && faults.at && faults.n[faults.what] >= faults.at &&
+      what < STRDUP) {
+    errno = EIO;
+    return 1;
+  }
   if (what != faults.what || faults.n[what] != faults.at) return 0;
+  if (faults.in) fail_again();
   errno = faults.error;
   return 1;
 }
@@ -74,15 +88,20 @@ static int fails(enum call what)
     return fails(what) ? failure : __real_##name arguments;                    \
   }
 
-static const size_t half = 2;
-#define LESS(call) (faults.error ? -1 : call)
+#define LESS(call) (faults.error == NONE ? 0 : faults.error == HALF ? call : -1)
 
 WRAP(ssize_t, read, (int fd, void *to, size_t n), (fd, to, n), READ,
-     LESS(__real_read(fd, to, n / half)))
+     LESS(__real_read(fd, to, n / 2)))
 WRAP(ssize_t, pread, (int fd, void *to, size_t n, off_t at), (fd, to, n, at),
-     PREAD, LESS(__real_pread(fd, to, n / half, at)))
+     PREAD, LESS(__real_pread(fd, to, n / 2, at)))
 WRAP(ssize_t, write, (int fd, const void *from, size_t n), (fd, from, n), WRITE,
-     LESS(__real_write(fd, from, n / half)))
+     LESS(__real_write(fd, from, n / 2)))
+WRAP(vg_status, vg_comm_sum,
+     (struct vg_comm * c, size_t n, uint64_t *v, struct vg_error *err),
+     (c, n, v, err), SUM, vg_fail(err, VG_ERR_IO, "a rank is lost"))
+WRAP(vg_status, vg_comm_agree,
+     (struct vg_comm * c, vg_status mine, struct vg_error *err), (c, mine, err),
+     AGREE, vg_fail(err, VG_ERR_IO, "a rank is lost"))
 WRAP(int, renameat, (int a, const char *from, int b, const char *to),
      (a, from, b, to), RENAME, -1)
 WRAP(int, fstat, (int fd, struct stat *s), (fd, s), FSTAT, -1)
@@ -121,8 +140,12 @@ int __wrap_open(const char *path, int flags, ...)
 
 int __real_openat(int at, const char *path, int flags, ...);
 int __wrap_openat(int at, const char *path, int flags, ...);
+/* A walk opens 256 folders, of which most are absent: they do not count. */
 int __wrap_openat(int at, const char *path, int flags, ...)
 {
+  if (!(flags & O_CREAT) && strlen(path) == strlen("records/00") &&
+      faccessat(at, path, F_OK, 0))
+    return -1;
   return fails(OPENAT) ? -1 : __real_openat(at, path, flags, 0666);
 }
 
@@ -202,7 +225,8 @@ static void digest_of_a_file(void)
   assert_true(fd >= 0);
   assert_int_equal(__real_write(fd, RUN_DIR, sizeof RUN_DIR), sizeof RUN_DIR);
   assert_int_equal(__real_lseek(fd, 0, SEEK_SET), 0);
-  if (!vg_digest_file(fd, &d, &bytes)) {
+  /* A read of no bytes is the end of the file. */
+  if (!vg_digest_file(fd, &d, &bytes) && faults.error != NONE) {
     if (!faults.at) first = d;
     assert_memory_equal(&d, &first, sizeof d);
     assert_int_equal(bytes, sizeof RUN_DIR);
@@ -259,20 +283,23 @@ static int continued(void)
   return n;
 }
 
-/* Fail each call of this kind in turn. */
-static void fail_each(enum call what, int error)
+/* Fail each call of this kind in turn, alone or with all later calls; of many
+ * calls, which are those of walks through 256 folders, about every hundredth.
+ */
+static void fail_each(enum call what, int error, int is_lasting)
 {
-  long n_call = 1;
+  long n_call = 0;
 
-  for (long at = 1; at <= n_call; at++) {
+  for (long at = 0; at <= n_call; at++) {
     memset(&faults, 0, sizeof faults);
     mkdir(VG_TMP_DIR "/store_faults", 0777);
     faults.what = what;
     memset(faults.n, 0, sizeof faults.n);
     faults.error = error;
+    faults.is_lasting = is_lasting;
     faults.at = at;
     scenario();
-    n_call = faults.n[what];
+    if (faults.n[what] > n_call) n_call = faults.n[what];
     faults.at = 0;
     assert_in_range(continued(), 0, N_RECORD);
   }
@@ -291,12 +318,46 @@ static void undisturbed(void **state)
 
 static void every_call_fails(void **state)
 {
-  static const int error[] = { EIO, EINTR, ENOENT, 0 };
+  static const int error[] = { EIO, EINTR, ENOENT, HALF, NONE };
 
   (void)state;
-  for (int what = 0; what < N_CALL; what++)
+  for (int what = 0; what < N_CALL; what++) {
     for (size_t i = 0; i < sizeof error / sizeof *error; i++)
-      fail_each((enum call)what, error[i]);
+      fail_each((enum call)what, error[i], 0);
+    fail_each((enum call)what, EIO, 1);
+  }
+}
+
+static void fail_again(void)
+{
+  struct vg_store *s = faults.in;
+
+  faults.in = NULL;
+  faults.at++;
+  vg_store_keep(s, key_of(8), 1, "x");
+}
+
+/* Two threads: the first failure is the reason that is reported. */
+static void two_records_fail(void **state)
+{
+  struct vg_store *s = NULL;
+  struct vg_store_report r;
+
+  (void)state;
+  memset(&faults, 0, sizeof faults);
+  mkdir(VG_TMP_DIR "/store_faults", 0777);
+  assert_int_equal(open_store(1, 0, &s), VG_OK);
+  memset(faults.n, 0, sizeof faults.n);
+  faults.what = WRITE;
+  faults.error = ENOSPC;
+  faults.in = s;
+  faults.at = 1;
+  vg_store_keep(s, key_of(7), 1, "x");
+  faults.at = 0;
+  vg_store_state(s, &r);
+  assert_int_equal(r.n_kept, 0);
+  assert_non_null(strstr(r.stopped, "No space left"));
+  vg_store_close(s, 1);
 }
 
 int main(void)
@@ -304,6 +365,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(undisturbed),
     cmocka_unit_test(every_call_fails),
+    cmocka_unit_test(two_records_fail),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -253,6 +253,15 @@ done:
   return st;
 }
 
+static json_t *body_of(const struct vg_boundary *b)
+{
+  return b->read->is_section
+         ? vg_report_defects_json(&b->surface, &b->check, b->read->unit,
+                                  VG_LISTED_DEFECTS)
+         : vg_report_surface_json(&b->surface, &b->check, b->read->unit,
+                                  VG_LISTED_DEFECTS);
+}
+
 /* Defects that are found only when the surface is closed, as of inner surfaces
  * or next to an added boundary. They replace *body. */
 static vg_status examine_closed(const struct vg_check_surface *a,
@@ -260,8 +269,7 @@ static vg_status examine_closed(const struct vg_check_surface *a,
                                 struct vg_error *err)
 {
   json_decref(*body);
-  *body = vg_report_surface_json(&b->surface, &b->check, b->read->unit,
-                                 VG_LISTED_DEFECTS);
+  *body = body_of(b);
   if (!a->json) {
     printf("\nClosed surface\n");
     vg_report_surface_text(stdout, &b->surface, &b->check, b->read->unit,
@@ -305,9 +313,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
     goto done;
   }
   VG_TRY(examine(a, b, &f, show, err));
-  body = vg_report_surface_json(&b->surface, &b->check, b->read->unit,
-                                VG_LISTED_DEFECTS);
-  if (p->read.is_section) json_object_del(body, "quality");
+  body = body_of(b);
   n_note = p->notes.n;
   n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
   n_defect = b->check.n_defect;

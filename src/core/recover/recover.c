@@ -380,7 +380,8 @@ static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
 
   for (size_t m = 0; m < p->n_cell; m++)
     r->t->flag[p->cell[m].index] |= VG_MARK;
-  bad = add_faces(r->t, p, 1) || add_faces(r->t, p, 0);
+  bad = add_faces(r->t, p, 1);
+  if (!bad) bad = add_faces(r->t, p, 0);
   for (size_t m = 0; m < p->n_cell; m++)
     r->t->flag[p->cell[m].index] &= (uint8_t)~VG_MARK;
   for (size_t m = 0; m < n_tri && !bad; m++)

@@ -368,6 +368,24 @@ static vg_status put_point(struct reader *r, const double x[2], int *is_new,
   return add_point(&r->all, x, r->in->line, err);
 }
 
+static int is_all_digits(const char *text, size_t len)
+{
+  while (len && isdigit((unsigned char)text[len - 1])) len--;
+  return !len;
+}
+
+/* Is the first line of a file a title that could be taken for numbers? "0012
+ * 64" is a designation, as no coordinate is an integer that begins with zero;
+ * one word is no point. */
+static int is_first_title(const struct reader *r, const char *text, size_t len,
+                          int n)
+{
+  if (r->all.n_point || *r->title) return 0;
+  return (n == 1 && !strncasecmp(text, "nan", 3)) ||
+         (n == 1 && !strncasecmp(text, "inf", 3)) ||
+         (len > 1 && *text == '0' && is_all_digits(text, len));
+}
+
 /* A line that is a title, as are those that do not begin with a number. Between
  * blocks, a title may begin with one. */
 static vg_status take_title(struct reader *r, struct vg_error *err)
@@ -397,6 +415,7 @@ static vg_status take_line(struct reader *r, int *is_new, struct vg_error *err)
   if (n > 2 && *text[2] == '#') n = 2;
   for (int k = 0; k < 2; k++)
     is_number[k] = k < n && vg_parse_real(text[k], len[k], &x[k]);
+  if (is_first_title(r, text[0], len[0], n)) return take_title(r, err);
   if (n == 2 && is_number[0] && is_number[1]) {
     *is_new |= x[0] == SEPARATOR && x[1] == SEPARATOR;
     return x[0] == SEPARATOR && x[1] == SEPARATOR

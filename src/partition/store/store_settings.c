@@ -89,7 +89,7 @@ static void add(struct list *to, size_t n_name, const char *name, size_t n_was,
   n = snprintf(to->at, to->size, "%.*s was %.*s, is %.*s; ", (int)n_name, name,
                n_was < SHOWN ? (int)n_was : SHOWN, was,
                n_is < SHOWN ? (int)n_is : SHOWN, is);
-  if (n < 0 || (size_t)n >= to->size) {
+  if ((size_t)n >= to->size) {
     *to->at = 0;
     to->more = 1;
   } else {

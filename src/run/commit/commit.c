@@ -6,7 +6,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,21 +40,21 @@ static void release(struct vg_commit *c)
   c->lock = -1;
 }
 
-/* Path of a file of the hidden folder, without memory of the heap: a run that
- * has none left must find a journal and remove its files. A longer path than
- * PATH_MAX is cut, and no call accepts it. */
+/* Path of a file of the hidden folder. */
 static void path_in(const struct vg_commit *c, const char *name,
-                    char path[PATH_MAX + 1])
+                    char path[VG_COMMIT_PATH])
 {
-  snprintf(path, PATH_MAX + 1, "%s/%s", c->hidden, name);
+  vg_commit_path(c->hidden, name, path);
 }
 
+/* 1, 0, or -1 with errno. */
 static int has(const struct vg_commit *c, const char *name)
 {
-  char path[PATH_MAX + 1];
+  char path[VG_COMMIT_PATH];
+  struct stat is;
 
   path_in(c, name, path);
-  return vg_path_exists(path);
+  return vg_path_look(path, &is);
 }
 
 static vg_status failed(const struct vg_commit *c, const char *what,
@@ -69,7 +68,7 @@ static vg_status failed(const struct vg_commit *c, const char *what,
 static vg_status drop(const struct vg_commit *c, const char *name,
                       struct vg_error *err)
 {
-  char path[PATH_MAX + 1];
+  char path[VG_COMMIT_PATH];
 
   path_in(c, name, path);
   return vg_tree_remove(path) ? failed(c, "cannot be removed", err) : VG_OK;
@@ -89,7 +88,7 @@ done:
 static vg_status rename_in(const struct vg_commit *c, const char *from,
                            const char *to, struct vg_error *err)
 {
-  char a[PATH_MAX + 1], b[PATH_MAX + 1];
+  char a[VG_COMMIT_PATH], b[VG_COMMIT_PATH];
 
   path_in(c, from, a);
   path_in(c, to, b);
@@ -148,14 +147,15 @@ static vg_status turn_back(struct vg_commit *c, vg_status st,
 
 static vg_status write_journal(struct vg_commit *c, struct vg_error *err)
 {
-  char *path = vg_commit_path(c->hidden, JOURNAL_PART);
-  vg_status st = path ? vg_journal_write(&c->moves, path, err)
-                      : vg_fail_memory(err, "the output paths");
+  char path[VG_COMMIT_PATH];
+  vg_status st;
 
-  free(path);
-  if (st >= 0) st = vg_folder_sync(c->hidden, err);
-  if (st >= 0) st = rename_in(c, JOURNAL_PART, JOURNAL, err);
-  if (st >= 0) st = vg_folder_sync(c->dir, err);
+  path_in(c, JOURNAL_PART, path);
+  VG_TRY(vg_journal_write(&c->moves, path, err));
+  VG_TRY(vg_folder_sync(c->hidden, err));
+  VG_TRY(rename_in(c, JOURNAL_PART, JOURNAL, err));
+  st = vg_folder_sync(c->dir, err);
+done:
   return st;
 }
 
@@ -242,19 +242,19 @@ done:
 /* Completes the moves of a process that has ended, or undoes them if one of
  * them fails. If all have been done, that process may have reported success, so
  * they are not undone. */
-static vg_status resume_moves(struct vg_commit *c, struct listener to,
-                              struct vg_error *err)
+static vg_status resume_moves(struct vg_commit *c, int is_undone,
+                              struct listener to, struct vg_error *err)
 {
-  const int is_undone = has(c, UNDO);
-  char *path = vg_commit_path(c->hidden, is_undone ? UNDO : JOURNAL);
-  vg_status st = path ? vg_journal_read(path, &c->moves, err)
-                      : vg_fail_memory(err, "the output paths");
+  char path[VG_COMMIT_PATH];
+  int left;
+  vg_status st;
 
-  free(path);
-  c->is_kept = 1;
-  if (st < 0) return st;
+  path_in(c, is_undone ? UNDO : JOURNAL, path);
+  VG_TRY(vg_journal_read(path, &c->moves, err));
   if (!is_undone) {
-    if (vg_moves_do(c, err) >= 0) return complete(c, to, err);
+    left = vg_moves_left(c);
+    if (left < 0) return failed(c, "its files cannot be found", err);
+    if (!left || vg_moves_do(c, err) >= 0) return complete(c, to, err);
     VG_TRY(rename_in(c, JOURNAL, UNDO, err));
   }
   VG_TRY(undo(c, err));
@@ -266,19 +266,24 @@ done:
   return st;
 }
 
+/* The hidden folder stays if its journal cannot be resumed, or if it is not
+ * known whether it has one. */
 static vg_status clear_remains(struct vg_commit *c, struct listener to,
                                struct vg_error *err)
 {
-  char *fresh = c->fresh;
+  const int is_undone = has(c, UNDO), is_moved = has(c, JOURNAL);
   uint64_t bytes;
-  vg_status st = VG_OK;
+  vg_status st;
 
-  if (has(c, JOURNAL) || has(c, UNDO)) {
-    VG_TRY(resume_moves(c, to, err));
+  c->is_kept = is_undone || is_moved;
+  if (is_undone < 0 || is_moved < 0)
+    return failed(c, "its journal cannot be read", err);
+  if (c->is_kept) {
+    VG_TRY(resume_moves(c, is_undone, to, err));
     vg_journal_release(&c->moves);
     st = drop_files(c, err);
   } else {
-    bytes = vg_tree_bytes(fresh);
+    bytes = vg_tree_bytes(c->fresh);
     VG_TRY(drop_files(c, err));
     if (bytes)
       tell(to,
@@ -292,39 +297,39 @@ done:
 
 /* --- the hidden folder --------------------------------------------------- */
 
-static vg_status set_paths(const char *dir, const char *hidden_name,
-                           struct vg_commit *c, struct vg_error *err)
+static vg_status set_paths(const char *dir, const char *prefix,
+                           const char *name, struct vg_commit *c,
+                           struct vg_error *err)
 {
   memset(c, 0, sizeof *c);
   c->lock = -1;
   c->dir = strdup(dir);
-  c->hidden = vg_commit_path(dir, hidden_name);
-  c->fresh = c->hidden ? vg_commit_path(c->hidden, NEW) : NULL;
+  if (asprintf(&c->hidden, "%s/%s%s", dir, prefix, name) < 0) c->hidden = NULL;
+  if (asprintf(&c->fresh, "%s/%s%s/" NEW, dir, prefix, name) < 0)
+    c->fresh = NULL;
   if (c->dir && c->hidden && c->fresh) return VG_OK;
   release(c);
   return vg_fail_memory(err, "the output paths");
 }
 
 /* VG_BLOCKED: another process has the lock. VG_ERR_IO: errno. */
-static vg_status lock(struct vg_commit *c, int makes, char *holder,
-                      struct vg_error *err)
+static vg_status lock(struct vg_commit *c, int makes, char *holder)
 {
-  char *path = vg_commit_path(c->hidden, LOCK);
+  char path[VG_COMMIT_PATH];
   vg_status st = VG_ERR_IO;
 
-  if (!path) return vg_fail_memory(err, "the output paths");
+  path_in(c, LOCK, path);
   for (int i = 0; i < ATTEMPTS && st == VG_ERR_IO; i++) {
     if (makes && mkdir(c->hidden, 0777) && errno != EEXIST) break;
     st = vg_lock_take(AT_FDCWD, path, &c->lock, holder);
     if (!makes || errno != ENOENT) break;
   }
-  free(path);
   return st;
 }
 
 static void unlock(struct vg_commit *c)
 {
-  char path[PATH_MAX + 1];
+  char path[VG_COMMIT_PATH];
 
   path_in(c, LOCK, path);
   if (!c->is_kept) {
@@ -355,7 +360,7 @@ static vg_status enter(struct vg_commit *c, const char *name,
                        struct listener to, struct vg_error *err)
 {
   char holder[VG_LOCK_HOLDER];
-  vg_status st = lock(c, 1, holder, err);
+  vg_status st = lock(c, 1, holder);
 
   if (st == VG_BLOCKED) return is_busy(c, name, holder, err);
   if (st == VG_ERR_IO) {
@@ -374,13 +379,8 @@ vg_status vg_commit_open(const char *dir, const char *name,
                          struct vg_commit *out, struct vg_error *err)
 {
   struct listener to = { note, user };
-  char *hidden;
-  vg_status st;
+  vg_status st = set_paths(dir, PREFIX, name, out, err);
 
-  if (asprintf(&hidden, PREFIX "%s", name) < 0)
-    return vg_fail_memory(err, "the output paths");
-  st = set_paths(dir, hidden, out, err);
-  free(hidden);
   if (st < 0) return st;
   st = enter(out, name, to, err);
   if (st < 0) release(out);
@@ -402,18 +402,20 @@ static void sweep_one(const char *dir, const char *name, struct listener to)
   struct vg_error err = VG_ERROR_INIT;
   struct vg_commit c;
   char holder[VG_LOCK_HOLDER];
-  vg_status st;
+  int is_locked;
 
-  if (set_paths(dir, name, &c, NULL) < 0) return;
-  if (has(&c, LOCK)) {
-    st = lock(&c, 0, holder, NULL);
+  if (set_paths(dir, "", name, &c, NULL) < 0) return;
+  is_locked = has(&c, LOCK);
+  if (is_locked) {
+    vg_status st = is_locked < 0 ? VG_ERR_IO : lock(&c, 0, holder);
+
     if (st == VG_OK) {
       if (clear_remains(&c, to, &err) < 0) {
         c.is_kept = 1;
         tell(to, "%s of a run that was killed: %s", c.hidden, err.text);
       }
       unlock(&c);
-    } else if (st == VG_ERR_IO && errno != ENOENT)
+    } else if (st < 0 && errno != ENOENT)
       tell(to,
            "%s may have been left behind by a run that was killed, but its "
            "lock cannot be opened: %s",

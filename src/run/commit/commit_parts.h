@@ -6,11 +6,17 @@
 #ifndef VG_RUN_COMMIT_COMMIT_PARTS_H
 #define VG_RUN_COMMIT_COMMIT_PARTS_H
 
+#include <limits.h>
+#include <sys/stat.h>
+
 #include "run/commit/commit.h"
 
 /** Determines which targets exist, refuses those that cannot be replaced, and
  * gives replaced files a second name in `old`. Changes no target. */
 vg_status vg_moves_prepare(struct vg_commit *c, struct vg_error *err);
+
+/** 1: a move has still to be done; 0: none; -1: it is not known, errno. */
+int vg_moves_left(const struct vg_commit *c);
 
 vg_status vg_moves_do(const struct vg_commit *c, struct vg_error *err);
 vg_status vg_moves_undo(const struct vg_commit *c, struct vg_error *err);
@@ -18,9 +24,13 @@ vg_status vg_moves_undo(const struct vg_commit *c, struct vg_error *err);
 /** Brings the names of all targets to the disk. */
 vg_status vg_moves_sync(const struct vg_commit *c, struct vg_error *err);
 
-/** "a/b", or b if it is absolute. NULL: no memory. */
-char *vg_commit_path(const char *a, const char *b);
+/** "a/b", or b if it is absolute, without memory of the heap: a run that has
+ * none left must find a journal and remove its files. A longer path than
+ * PATH_MAX is cut, and no call accepts it. */
+#define VG_COMMIT_PATH (PATH_MAX + 1)
+void vg_commit_path(const char *a, const char *b, char path[VG_COMMIT_PATH]);
 
-int vg_path_exists(const char *path);
+/** lstat. Returns 1; 0: there is no such path; -1: it is not known, errno. */
+int vg_path_look(const char *path, struct stat *is);
 
 #endif

@@ -104,22 +104,22 @@ static char *slurp(const char *path, size_t *size)
 {
   FILE *f = fopen(path, "re");
   char *text = NULL;
-  size_t cap = 0, n = 0, got;
+  size_t cap = 0, n = 0, got = 0;
+  int is_bad, why;
 
   if (!f) return NULL;
   do {
-    if (vg_reserve(&text, &cap, n + 4097, 1)) {
-      free(text);
-      fclose(f);
-      errno = ENOMEM;
-      return NULL;
-    }
-    n += got = fread(text + n, 1, 4096, f);
-  } while (got);
-  text[n] = 0;
-  *size = n;
+    is_bad = vg_reserve(&text, &cap, n + 4097, 1);
+    if (!is_bad) n += got = fread(text + n, 1, 4096, f);
+  } while (!is_bad && got);
+  is_bad |= ferror(f);
+  why = errno;
   fclose(f);
-  return text;
+  errno = why;
+  *size = n;
+  if (is_bad) free(text);
+  else text[n] = 0;
+  return is_bad ? NULL : text;
 }
 
 /* Reads one move at *at and advances it. VG_BLOCKED: it is damaged. */

@@ -9,7 +9,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,44 +16,33 @@
 #include "run/commit/commit_parts.h"
 #include "run/commit/tree.h"
 
-/* Paths of a move: the new file, the target, the replaced file. */
+/* Paths of a move: the new file, the target, the replaced file and its
+ * folder. */
 struct paths {
-  char *from, *to, *old;
+  char from[VG_COMMIT_PATH], to[VG_COMMIT_PATH], old[VG_COMMIT_PATH];
+  char folder[VG_COMMIT_PATH];
 };
 
-static void release(struct paths *p)
+void vg_commit_path(const char *a, const char *b, char path[VG_COMMIT_PATH])
 {
-  free(p->from);
-  free(p->to);
-  free(p->old);
+  snprintf(path, VG_COMMIT_PATH, "%s%s%s", *b == '/' ? "" : a,
+           *b == '/' ? "" : "/", b);
 }
 
-char *vg_commit_path(const char *a, const char *b)
+int vg_path_look(const char *path, struct stat *is)
 {
-  char *path;
-
-  if (*b == '/') return strdup(b);
-  return asprintf(&path, "%s/%s", a, b) < 0 ? NULL : path;
+  if (!lstat(path, is)) return 1;
+  return errno == ENOENT ? 0 : -1;
 }
 
-int vg_path_exists(const char *path)
-{
-  struct stat s;
-
-  return !lstat(path, &s);
-}
-
-static vg_status paths_of(const struct vg_commit *c, size_t i, struct paths *p,
-                          struct vg_error *err)
+static void paths_of(const struct vg_commit *c, size_t i, struct paths *p)
 {
   const struct vg_move *m = &c->moves.move[i];
 
-  p->from = vg_commit_path(c->fresh, m->from);
-  p->to = vg_commit_path(c->dir, m->to);
-  if (asprintf(&p->old, "%s/old/%zu", c->hidden, i) < 0) p->old = NULL;
-  if (p->from && p->to && p->old) return VG_OK;
-  release(p);
-  return vg_fail_memory(err, "the output paths");
+  vg_commit_path(c->fresh, m->from, p->from);
+  vg_commit_path(c->dir, m->to, p->to);
+  vg_commit_path(c->hidden, "old", p->folder);
+  snprintf(p->old, sizeof p->old, "%s/old/%zu", c->hidden, i);
 }
 
 /* A path as people write it: without the "./" of the current folder. */
@@ -103,8 +91,8 @@ static vg_status prepare_one(struct vg_move *m, const struct paths *p,
   struct stat is;
   vg_status st;
 
-  m->had_old = !lstat(p->to, &is);
-  if (!m->had_old && errno != ENOENT) return not_moved(p, errno, err);
+  m->had_old = vg_path_look(p->to, &is);
+  if (m->had_old < 0) return not_moved(p, errno, err);
   if (m->had_old && (st = refuse_kind(m, p, &is, err)) < 0) return st;
   if (m->kind == VG_MOVE_FOLDER) {
     if (lstat(p->from, &is)) return not_moved(p, errno, err);
@@ -118,54 +106,65 @@ static vg_status prepare_one(struct vg_move *m, const struct paths *p,
 
 vg_status vg_moves_prepare(struct vg_commit *c, struct vg_error *err)
 {
-  char *old = vg_commit_path(c->hidden, "old");
+  char old[VG_COMMIT_PATH];
+  struct paths p;
   vg_status st = VG_OK;
 
-  if (!old) return vg_fail_memory(err, "the output paths");
+  vg_commit_path(c->hidden, "old", old);
   if (mkdir(old, 0777))
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", old,
-                 strerror(errno));
+    return vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", old,
+                   strerror(errno));
   for (size_t i = 0; i < c->moves.n && st >= 0; i++) {
-    struct paths p;
-
-    st = paths_of(c, i, &p, err);
-    if (st < 0) break;
+    paths_of(c, i, &p);
     st = prepare_one(&c->moves.move[i], &p, err);
-    release(&p);
   }
-  if (st >= 0) st = vg_folder_sync(old, err);
-  free(old);
-  return st;
+  return st < 0 ? st : vg_folder_sync(old, err);
 }
 
 /* --- forward ------------------------------------------------------------- */
 
-static int is_new_folder(const struct vg_move *m, const char *path)
-{
-  struct stat s;
+/* How far a move is. */
+struct seen {
+  int from, to, old; /* 1: the path exists. */
+  int is_new_folder; /* 1: `to` is the new folder. */
+};
 
-  return !lstat(path, &s) && s.st_ino == m->ino;
+/* A path that cannot be looked up counts neither as present nor as absent: the
+ * next step could destroy the only copy of a file. Returns 0, or -1 with
+ * errno. */
+static int look(const struct vg_move *m, const struct paths *p,
+                struct seen *seen)
+{
+  struct stat is;
+
+  if ((seen->from = vg_path_look(p->from, &is)) < 0 ||
+      (seen->old = vg_path_look(p->old, &is)) < 0 ||
+      (seen->to = vg_path_look(p->to, &is)) < 0)
+    return -1;
+  seen->is_new_folder = seen->to && is.st_ino == m->ino;
+  return 0;
 }
 
 /* Gives the old file its place in `old`, on the disk before the new one takes
  * its name. Returns 0, or -1 with errno. */
-static int set_aside(const struct paths *p)
+static int set_aside(const struct paths *p, const struct seen *is)
 {
-  char *slash = strrchr(p->old, '/');
-  vg_status st;
-
-  if (!vg_path_exists(p->to)) return 0;
+  if (!is->to) return 0;
   if (rename(p->to, p->old)) return -1;
-  *slash = 0;
-  st = vg_folder_sync(p->old, NULL);
-  *slash = '/';
-  return st < 0 ? -1 : 0;
+  return vg_folder_sync(p->folder, NULL) < 0 ? -1 : 0;
 }
 
-static int do_file(const struct vg_move *m, const struct paths *p)
+static int is_done(const struct vg_move *m, const struct seen *is)
 {
-  if (!vg_path_exists(p->from)) return 0;
-  if (m->had_old && !vg_path_exists(p->old) && set_aside(p)) return -1;
+  if (m->kind == VG_MOVE_REMOVE) return is->old || !is->to;
+  return is->is_new_folder || !is->from;
+}
+
+static int do_file(const struct vg_move *m, const struct paths *p,
+                   const struct seen *is)
+{
+  if (is_done(m, is)) return 0;
+  if (m->had_old && !is->old && set_aside(p, is)) return -1;
   return rename(p->from, p->to);
 }
 
@@ -179,83 +178,106 @@ static int exchange(const struct paths *p)
   return renameat2(AT_FDCWD, p->from, AT_FDCWD, p->to, RENAME_EXCHANGE);
 }
 
-static int do_folder(const struct vg_move *m, const struct paths *p)
+static int do_folder(const struct vg_move *m, const struct paths *p,
+                     const struct seen *is)
 {
-  if (is_new_folder(m, p->to) || !vg_path_exists(p->from)) return 0;
-  if (m->had_old && !vg_path_exists(p->old) && vg_path_exists(p->to)) {
+  if (is_done(m, is)) return 0;
+  if (m->had_old && !is->old && is->to) {
     if (!exchange(p)) return 0;
-    if (!cannot_exchange(errno) || set_aside(p)) return -1;
+    if (!cannot_exchange(errno) || set_aside(p, is)) return -1;
   }
   return rename(p->from, p->to);
 }
 
-static int do_removal(const struct paths *p)
+static int do_removal(const struct vg_move *m, const struct paths *p,
+                      const struct seen *is)
 {
-  return vg_path_exists(p->old) ? 0 : set_aside(p);
+  return is_done(m, is) ? 0 : set_aside(p, is);
+}
+
+/* --- backward ------------------------------------------------------------ */
+
+static int undo_file(const struct vg_move *m, const struct paths *p,
+                     const struct seen *is)
+{
+  if (is->old) return rename(p->old, p->to);
+  return m->had_old || is->from || !is->to ? 0 : unlink(p->to);
+}
+
+static int undo_folder(const struct vg_move *m, const struct paths *p,
+                       const struct seen *is)
+{
+  if (is->is_new_folder) {
+    if (m->had_old && !is->old) return exchange(p);
+    if (rename(p->to, p->from)) return -1;
+  }
+  return is->old ? rename(p->old, p->to) : 0;
+}
+
+static int undo_removal(const struct vg_move *m, const struct paths *p,
+                        const struct seen *is)
+{
+  (void)m;
+  return is->old ? rename(p->old, p->to) : 0;
+}
+
+/* --- both ---------------------------------------------------------------- */
+
+typedef int step(const struct vg_move *m, const struct paths *p,
+                 const struct seen *is);
+
+static step *const steps[2][3] = {
+  { [VG_MOVE_FILE] = do_file,
+    [VG_MOVE_FOLDER] = do_folder,
+    [VG_MOVE_REMOVE] = do_removal },
+  { [VG_MOVE_FILE] = undo_file,
+    [VG_MOVE_FOLDER] = undo_folder,
+    [VG_MOVE_REMOVE] = undo_removal },
+};
+
+static vg_status move_one(const struct vg_commit *c, size_t i, int is_undone,
+                          struct vg_error *err)
+{
+  const struct vg_move *m = &c->moves.move[i];
+  struct paths p;
+  struct seen is;
+
+  paths_of(c, i, &p);
+  if (!look(m, &p, &is) && !steps[is_undone][m->kind](m, &p, &is)) return VG_OK;
+  if (!is_undone) return not_moved(&p, errno, err);
+  return vg_fail(err, VG_ERR_IO, "%s: cannot be restored: %s", shown(p.to),
+                 strerror(errno));
+}
+
+int vg_moves_left(const struct vg_commit *c)
+{
+  int n = 0;
+
+  for (size_t i = 0; i < c->moves.n; i++) {
+    struct paths p;
+    struct seen is;
+
+    paths_of(c, i, &p);
+    if (look(&c->moves.move[i], &p, &is)) return -1;
+    n |= !is_done(&c->moves.move[i], &is);
+  }
+  return n;
 }
 
 vg_status vg_moves_do(const struct vg_commit *c, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  for (size_t i = 0; i < c->moves.n && st >= 0; i++) {
-    const struct vg_move *m = &c->moves.move[i];
-    struct paths p;
-    int failed;
-
-    st = paths_of(c, i, &p, err);
-    if (st < 0) break;
-    failed = m->kind == VG_MOVE_FILE   ? do_file(m, &p)
-           : m->kind == VG_MOVE_FOLDER ? do_folder(m, &p)
-                                       : do_removal(&p);
-    if (failed) st = not_moved(&p, errno, err);
-    release(&p);
-  }
+  for (size_t i = 0; i < c->moves.n && st >= 0; i++)
+    st = move_one(c, i, 0, err);
   return st;
-}
-
-/* --- backward ------------------------------------------------------------ */
-
-static int undo_file(const struct vg_move *m, const struct paths *p)
-{
-  if (vg_path_exists(p->old)) return rename(p->old, p->to);
-  if (m->had_old || vg_path_exists(p->from)) return 0;
-  return unlink(p->to) && errno != ENOENT ? -1 : 0;
-}
-
-static int undo_folder(const struct vg_move *m, const struct paths *p)
-{
-  if (is_new_folder(m, p->to)) {
-    if (m->had_old && !vg_path_exists(p->old)) return exchange(p);
-    if (rename(p->to, p->from)) return -1;
-  }
-  return vg_path_exists(p->old) ? rename(p->old, p->to) : 0;
-}
-
-static int undo_removal(const struct paths *p)
-{
-  return vg_path_exists(p->old) ? rename(p->old, p->to) : 0;
 }
 
 vg_status vg_moves_undo(const struct vg_commit *c, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  for (size_t i = c->moves.n; i-- > 0 && st >= 0;) {
-    const struct vg_move *m = &c->moves.move[i];
-    struct paths p;
-    int failed;
-
-    st = paths_of(c, i, &p, err);
-    if (st < 0) break;
-    failed = m->kind == VG_MOVE_FILE   ? undo_file(m, &p)
-           : m->kind == VG_MOVE_FOLDER ? undo_folder(m, &p)
-                                       : undo_removal(&p);
-    if (failed)
-      st = vg_fail(err, VG_ERR_IO, "%s: cannot be restored: %s", shown(p.to),
-                   strerror(errno));
-    release(&p);
-  }
+  for (size_t i = c->moves.n; i-- > 0 && st >= 0;) st = move_one(c, i, 1, err);
   return st;
 }
 
@@ -272,18 +294,15 @@ static void cut_name(char *path)
 
 vg_status vg_moves_sync(const struct vg_commit *c, struct vg_error *err)
 {
-  char *last = NULL;
+  char folder[2][VG_COMMIT_PATH] = { "", "" };
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < c->moves.n && st >= 0; i++) {
-    char *folder = vg_commit_path(c->dir, c->moves.move[i].to);
+    char *now = folder[i % 2];
 
-    if (!folder) return free(last), vg_fail_memory(err, "the output paths");
-    cut_name(folder);
-    if (!last || strcmp(folder, last) != 0) st = vg_folder_sync(folder, err);
-    free(last);
-    last = folder;
+    vg_commit_path(c->dir, c->moves.move[i].to, now);
+    cut_name(now);
+    if (strcmp(now, folder[1 - i % 2]) != 0) st = vg_folder_sync(now, err);
   }
-  free(last);
   return st;
 }

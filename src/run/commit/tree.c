@@ -33,7 +33,7 @@ static size_t remove_entries(int fd, int *why)
       if (!remove_at(fd, e->d_name)) n_removed++;
       else *why = errno;
     }
-  if (n < 0 && errno != ENOENT) *why = errno;
+  if (n < 0) *why = errno;
   return n_removed;
 }
 

@@ -78,6 +78,12 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r, int unit,
                                size_t shown);
 
+/** The same without the quality of the triangles: of a plane section, those of
+ * its strip say nothing. */
+json_t *vg_report_defects_json(const struct vg_mesh *m,
+                               const struct vg_surface_report *r, int unit,
+                               size_t shown);
+
 /** Result of remeshing; prints nothing, or returns null, if the surface was not
  * remeshed. */
 void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n);

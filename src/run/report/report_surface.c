@@ -385,7 +385,7 @@ static json_t *defects_json(const struct vg_mesh *m,
   return list;
 }
 
-json_t *vg_report_surface_json(const struct vg_mesh *m,
+json_t *vg_report_defects_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r, int unit,
                                size_t shown)
 {
@@ -404,16 +404,26 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                                     s->lo[0], s->lo[1], s->lo[2], "upper",
                                     s->hi[0], s->hi[1], s->hi[2]));
   }
-  return json_pack("{s:s? s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}",
-                   "unit", unit ? vg_unit_name(unit) : NULL, "ok",
-                   r->n_defect == 0, "closed", r->is_closed, "defects",
-                   (json_int_t)r->n_defect, "count", counts, "shells", shells,
-                   "flipped", (json_int_t)r->n_flipped, "removed_points",
+  return json_pack("{s:s? s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o}", "unit",
+                   unit ? vg_unit_name(unit) : NULL, "ok", r->n_defect == 0,
+                   "closed", r->is_closed, "defects", (json_int_t)r->n_defect,
+                   "count", counts, "shells", shells, "flipped",
+                   (json_int_t)r->n_flipped, "removed_points",
                    (json_int_t)r->n_removed_point, "removed_triangles",
                    (json_int_t)r->n_removed_tri, "removed_wall_triangles",
                    (json_int_t)r->n_removed_wall, "shells_reoriented",
-                   r->shells_reoriented, "first", defects_json(m, r, shown),
-                   "quality", quality_json(m));
+                   r->shells_reoriented, "first", defects_json(m, r, shown));
+}
+
+json_t *vg_report_surface_json(const struct vg_mesh *m,
+                               const struct vg_surface_report *r, int unit,
+                               size_t shown)
+{
+  json_t *all = vg_report_defects_json(m, r, unit, shown);
+
+  if (!json_object_set_new(all, "quality", quality_json(m))) return all;
+  json_decref(all);
+  return NULL;
 }
 
 void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)

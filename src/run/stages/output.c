@@ -348,6 +348,16 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
   return VG_OK;
 }
 
+vg_status vg_outputs_new(struct vg_outputs *o, const char *suffix, char **path,
+                         struct vg_error *err)
+{
+  vg_status st = vg_outputs_add(o, suffix, err);
+
+  *path = st < 0 ? NULL : vg_outputs_temp_path(o, suffix);
+  if (st >= 0 && !*path) st = vg_fail_memory(err, "the output paths");
+  return st;
+}
+
 /* Distributes the name of the folder that rank 0 makes. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err)
@@ -380,9 +390,8 @@ static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
                            const char *item, struct vg_error *err)
 {
   struct vg_slices_options options = vg_options_slices(&p->asked);
-  char *path = vg_outputs_temp_path(o, item);
-  vg_status st = path ? vg_outputs_add(o, item, err)
-                      : vg_fail_memory(err, "the output paths");
+  char *path;
+  vg_status st = vg_outputs_new(o, item, &path, err);
 
   st = vg_comm_agree(comm, st, err);
   if (st >= 0)
@@ -477,9 +486,8 @@ static vg_status write_whole(struct writing *w, const char *item,
   struct vg_foam_options options;
   const int is_foam = vg_foam_word(item, &options);
   const char *suffix = is_foam ? VG_FOAM_SUFFIX : item;
-  char *path = vg_outputs_temp_path(w->o, suffix);
-  vg_status st = path ? vg_outputs_add(w->o, suffix, err)
-                      : vg_fail_memory(err, "the output paths");
+  char *path;
+  vg_status st = vg_outputs_new(w->o, suffix, &path, err);
 
   VG_TRY(vg_comm_agree(w->comm, st, err));
   w->o->file[w->o->n_file - 1].is_case = is_foam;
@@ -505,10 +513,9 @@ static vg_status write_conditions(struct writing *w, const char *item,
 {
   int is_fun3d = strcmp(item, "mapbc") != 0;
   struct vg_mesh boundary = VG_MESH_INIT;
-  char *path = vg_outputs_temp_path(w->o, item);
-  vg_status st = vg_outputs_add(w->o, item, err);
+  char *path;
+  vg_status st = vg_outputs_new(w->o, item, &path, err);
 
-  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   VG_TRY(vg_comm_agree(w->comm, st, err));
   st = vg_slices_boundary(w->comm, w->mesh, w->threads, &boundary, err);
   if (st >= 0 && !w->o->is_guest)
@@ -586,10 +593,9 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
                              const struct vg_layer_stage *layers,
                              struct vg_error *err)
 {
-  char *path = vg_outputs_temp_path(o, WALLS);
-  vg_status st = vg_outputs_add(o, WALLS, err);
+  char *path;
+  vg_status st = vg_outputs_new(o, WALLS, &path, err);
 
-  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   if (st >= 0)
     st = vg_layer_stage_write(layers, &p->boundary.surface, path, err);
   free(path);
@@ -607,28 +613,26 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   const char *input = *f->surface ? f->surface : f->stem;
   const char *quote = strchr(input, ' ') ? "'" : ""; /* Quotation for a
                                                         shell. */
-  char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
+  char *path, *comment = NULL;
   struct vg_helper tetgen, wrap;
   vg_status st;
 
   vg_helper_find(VG_HELPER_TETGEN, &tetgen);
   vg_helper_find(VG_HELPER_WRAPS, &wrap);
-
-  if (!path ||
-      asprintf(&comment,
+  VG_TRY(vg_outputs_new(o, "resolved.deck", &path, err));
+  if (asprintf(&comment,
                "# Complete settings of a run. To repeat it:\n#   vanguard "
                "mesh -p %s%s%s --deck %s%s.resolved.deck%s\n# (sources of a "
                ".d3m are listed below and are not read again)\n"
                "# Helper programs: %s (%s); %s (%s)\n",
                quote, input, quote, quote, o->name, quote, tetgen.name,
-               tetgen.identity, wrap.name, wrap.identity) < 0) {
-    free(path);
-    return vg_fail_memory(err, "the settings");
-  }
+               tetgen.identity, wrap.name, wrap.identity) < 0)
+    comment = NULL;
   settings.threads = 0;
   *settings.helpers = 0;
-  st = vg_outputs_add(o, "resolved.deck", err);
-  if (st >= 0) st = vg_deck_write(path, &settings, comment, VG_DECK_ALL, err);
+  st = comment ? vg_deck_write(path, &settings, comment, VG_DECK_ALL, err)
+               : vg_fail_memory(err, "the settings");
+done:
   free(path);
   free(comment);
   return st;

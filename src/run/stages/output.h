@@ -56,8 +56,7 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
                            struct vg_outputs *o, struct vg_error *err);
 
 /** Distributes the name of the hidden folder, and makes it if that has not been
- * done. Collective. Each file is then registered by vg_outputs_add and written
- * to vg_outputs_temp_path. */
+ * done. Collective. Each file then comes from vg_outputs_new. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err);
 
@@ -182,6 +181,11 @@ vg_status vg_outputs_sync(const struct vg_outputs *o, struct vg_error *err);
  * become those of the target folder. */
 vg_status vg_outputs_failed(const struct vg_outputs *o, vg_status st,
                             struct vg_error *err);
+
+/** Registers STEM.suffix, and returns the path at which the caller writes it;
+ * free() it. NULL if it fails. */
+vg_status vg_outputs_new(struct vg_outputs *o, const char *suffix, char **path,
+                         struct vg_error *err);
 
 /** Registers a file that the caller writes into the hidden folder. */
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,

@@ -75,9 +75,7 @@ vg_status vg_outputs_periodic(struct vg_outputs *o,
   for (size_t i = 0; i < o->n_item; i++)
     needs |= vg_ugrid_kind(o->item[i], &kind) || !strcmp(o->item[i], "su2");
   if (!needs || !l->links.n || o->is_guest) return VG_OK;
-  path = vg_outputs_temp_path(o, VG_PERIODIC_SUFFIX);
-  st = path ? vg_outputs_add(o, VG_PERIODIC_SUFFIX, err)
-            : vg_fail_memory(err, "the output paths");
+  st = vg_outputs_new(o, VG_PERIODIC_SUFFIX, &path, err);
   if (st >= 0)
     st = vg_periodic_cfg_write(path, &l->boundary, l->links.n, l->pair, err);
   free(path);

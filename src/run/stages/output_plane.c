@@ -14,11 +14,10 @@ int vg_outputs_has_plane(const struct vg_outputs *o, const char *item)
 vg_status vg_outputs_plane(struct vg_outputs *o, struct vg_comm *comm,
                            const char *item, struct vg_error *err)
 {
-  char *path = vg_outputs_temp_path(o, item);
-  vg_status st = vg_outputs_add(o, item, err);
+  char *path;
+  vg_status st = vg_outputs_new(o, item, &path, err);
 
   assert(vg_outputs_has_plane(o, item));
-  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   if (st >= 0 && !o->is_guest) st = vg_plane_write(path, item, o->plane, err);
   free(path);
   return vg_comm_agree(comm, st, err);

@@ -109,9 +109,7 @@ vg_status vg_outputs_sheets(struct vg_outputs *o, const struct vg_mesh *m,
     o->drops_sheets = is_own;
     return VG_OK;
   }
-  path = vg_outputs_temp_path(o, VG_SHEET_SUFFIX);
-  st = path ? vg_outputs_add(o, VG_SHEET_SUFFIX, err)
-            : vg_fail_memory(err, "the output paths");
+  st = vg_outputs_new(o, VG_SHEET_SUFFIX, &path, err);
   if (st >= 0) st = vg_sheet_file_write(path, m, n_point, n_cell, err);
   free(path);
   return st;
