@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # shellcheck shell=bash disable=SC2154
-# A solid with fins, of the example, heated by 100 W, in a fluid at rest, whose box is
-# kept at 300 K: a region of OpenFOAM for each zone. Solid and fluid are of no real
-# material: heat spreads so fast that it leaves them as it comes after four seconds.
+# A solid with fins, of the example, heated by 100 W, in a laminar flow of 1 m/s along
+# x at a Reynolds number of 80: a region of OpenFOAM for each zone. Properties are
+# constant, so that the flow does not depend on the temperature: simpleFoam makes it,
+# and chtMultiRegionFoam keeps it (frozenFlow). With its own equations of flow,
+# chtMultiRegionFoam of Debian's OpenFOAM 1912 diverges on tetrahedra: its function
+# fvc::reconstruct is wrong there, see docs/guide/zones.md.
 
 # coupled NAME KIND: the condition of temperature at the interface of a region.
 coupled() {
@@ -26,12 +29,39 @@ boundaryField { ".*" { type $2; value uniform 1e5; } }
 END
 }
 
-air_fields() {
-  dictionary 0/air/U volVectorField <<'END'
+# The flow around the fins, in the folder flow: U, and phi, the volume that passes
+# each face. The density is 1 kg/m3, so that the mass is the same number.
+air_flow() {
+  mkdir -p flow/constant && cp -r constant/air/polyMesh flow/constant || return
+  cd flow || return
+  dictionary 0/U volVectorField <<'END'
 dimensions [0 1 -1 0 0 0 0];
-internalField uniform (0 0 0);
-boundaryField { ".*" { type noSlip; } }
+internalField uniform (1 0 0);
+boundaryField
+{
+    x-min { type fixedValue; value uniform (1 0 0); }
+    x-max { type inletOutlet; inletValue uniform (0 0 0); value $internalField; }
+    "[yz]-.*" { type slip; }
+    air_to_fins { type noSlip; }
+}
 END
+  dictionary 0/p volScalarField <<'END'
+dimensions [0 2 -2 0 0 0 0];
+internalField uniform 0;
+boundaryField
+{
+    x-max { type fixedValue; value uniform 0; }
+    ".*" { type zeroGradient; }
+}
+END
+  flow_settings 0.005
+  run 600 simpleFoam && residuals
+  cd ..
+}
+
+air_fields() {
+  cp flow/100/U 0/air/
+  sed 's/^dimensions .*/dimensions [1 0 -1 0 0 0 0];/' flow/100/phi >0/air/phi
   pressure 0/air/p calculated
   pressure 0/air/p_rgh fixedValue
   dictionary 0/air/T volScalarField <<END
@@ -39,7 +69,9 @@ dimensions [0 0 0 1 0 0 0];
 internalField uniform 300;
 boundaryField
 {
-    "[xyz]-.*" { type fixedValue; value uniform 300; }
+    x-min { type fixedValue; value uniform 300; }
+    x-max { type zeroGradient; }
+    "[yz]-.*" { type zeroGradient; }
 $(coupled air_to_fins fluidThermo)
 }
 END
@@ -72,9 +104,9 @@ thermoType
 mixture
 {
     specie { molWeight 28.9; }
-    equationOfState { rho 0.1; }
-    thermodynamics { Cp 1000; Hf 0; }
-    transport { mu 0.02; Pr 1; }
+    equationOfState { rho 1; }
+    thermodynamics { Cp 100; Hf 0; }
+    transport { mu 0.005; Pr 0.7; }
 }
 END
   dictionary system/air/fvSchemes <<'END'
@@ -146,9 +178,9 @@ application chtMultiRegionFoam;
 startFrom startTime;
 startTime 0;
 stopAt endTime;
-endTime 4;
+endTime 8;
 deltaT 0.02;
-writeInterval 200;
+writeInterval 300;
 adjustTimeStep no;
 functions
 {
@@ -162,6 +194,20 @@ functions
         writeInterval 25;
     }
     heat_of_fins { $heat; region fins; patches (fins_to_air); }
+    outflow
+    {
+        type surfaceFieldValue;
+        libs (fieldFunctionObjects);
+        region air;
+        regionType patch;
+        name x-max;
+        operation weightedAverage;
+        weightField phi;
+        fields (T);
+        writeFields no;
+        writeControl timeStep;
+        writeInterval 25;
+    }
 }
 END
 }
@@ -176,17 +222,22 @@ fins() {
   run 60 splitMeshRegions -cellZones -overwrite || return
   sound -region air
   sound -region fins
+  air_flow || return
   air_fields
   fins_fields
   air_settings
   fins_settings
   both_settings
   run 600 chtMultiRegionFoam || return
-  # The last integral over the interface, from either side.
-  awk 'FNR == 1 { n++ } !/^#/ { flux[n] = $NF }
-       END { print "  heat into the fluid, out of the solid: " flux[1], flux[2]
-             for (i in flux) if ((flux[i] < 0 ? -flux[i] : flux[i]) < 99 ||
-                                 (flux[i] < 0 ? -flux[i] : flux[i]) > 101) bad = 1
-             exit bad || n < 2 }' postProcessing/air/*/*/*.dat \
-    postProcessing/fins/*/*/*.dat || bad "the heat is not 100 W"
+  # The last integral over the interface, from either side, and the temperature of
+  # the outflow, which 1 kg/s with 100 J/(kg K) leave 1 K warmer.
+  awk 'FNR == 1 { n++ } !/^#/ { last[n] = $NF }
+       function near(x, to) { return x > .99 * to && x < 1.01 * to }
+       END { print "  heat into the fluid, out of the solid: " last[1], last[2]
+             print "  temperature of the outflow above that of the inflow: " \
+               last[3] - 300
+             exit !(near(last[1], 100) && near(-last[2], 100) &&
+                    near(last[3] - 300, 1)) }' \
+    postProcessing/air/heat/*/*.dat postProcessing/fins/*/*/*.dat \
+    postProcessing/air/outflow/*/*.dat || bad "the heat is not 100 W"
 }

@@ -8,8 +8,9 @@
 #   rotor  `vanguard demo rotor` in simpleFoam, with the MRFProperties of
 #          docs/guide/zones.md: the initial residuals fall below 1e-3, and the
 #          blades turn
-#   fins   `vanguard demo fins` in splitMeshRegions and chtMultiRegionFoam: the
-#          100 W of the solid arrive in the fluid
+#   fins   `vanguard demo fins` in splitMeshRegions, simpleFoam and
+#          chtMultiRegionFoam: the 100 W of the solid arrive in the flow and in
+#          the outflow
 #   baffle a duct with a baffle and a sheet, both with layers, in simpleFoam: the
 #          initial residuals fall below 1e-3, and all of the flow passes the
 #          sheet
