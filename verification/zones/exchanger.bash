@@ -23,7 +23,8 @@ exchanger() {
     outflow_at outflow_of_cold cold cold_out
   } | all_regions "hot cold" pipe 25 0.05
   run 600 chtMultiRegionFoam || return
-  # What the fluids lose and gain between inflow and outflow, with 100 J/(kg K), and what passes
+  # What the fluids lose and gain between inflow and outflow, with 100 J/(kg K), and what
+  # passes
   # the pipe. Some heat is conducted through the inflow, against the flow.
   for region in hot cold; do
     last_values postProcessing/$region/{heat,outflow}_of_$region/*/*.dat \
