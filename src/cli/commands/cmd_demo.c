@@ -93,8 +93,9 @@ static const char layer_comment[] =
 
 static const char walls_comment[] =
   "# Layers grow on the patches in walls: the casing, and the sides of the\n"
-  "# pipe that face the fluids. 'vanguard mesh --layers no' generates isotropic\n"
-  "# cells only; '--cells mixed' does not divide prisms into tetrahedra.\n";
+  "# pipe that face the fluids. 'vanguard mesh --layers no' generates\n"
+  "# isotropic cells only; '--cells mixed' does not divide prisms into\n"
+  "# tetrahedra.\n";
 
 /* Returns 1 if the case has layers. */
 static int set_layers(const char *name, struct vg_settings *s)

@@ -7,7 +7,10 @@
 
 #include "base/memory.h"
 #include "core/mesh/copies.h"
+#include "io/cad/cad.h"
+#include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
+#include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
 
 static int wants_inner(const struct vg_settings *s)
@@ -21,28 +24,39 @@ static int wants_inner(const struct vg_settings *s)
 
 int vg_boundary_wants_inner(const struct vg_boundary *b)
 {
-  return wants_inner(&b->read->settings);
+  return wants_inner(&b->read->settings) || vg_mesh_has_interfaces(&b->surface);
+}
+
+int vg_read_has_solid_zones(const struct vg_read *r)
+{
+  return r->settings.cad.solids == VG_CAD_SOLIDS_ZONES && !*r->files.front &&
+         vg_format_is_cad(r->files.surface);
 }
 
 const char *vg_read_keeps_triangles(const struct vg_read *r)
 {
   if (r->settings.n_periodic) return "periodic patches";
-  return wants_inner(&r->settings) ? "inner surfaces" : NULL;
+  return wants_inner(&r->settings) || vg_read_has_solid_zones(r)
+         ? "inner surfaces"
+         : NULL;
 }
 
 const char *vg_inner_source(const struct vg_settings *s, char *text,
                             size_t size)
 {
   const char *const name[] = { "baffles ", "sheets ", "zone_interfaces ",
-                               "the table patches" };
-  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "" };
+                               "the table patches", "cad_solids zones" };
+  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "",
+                               "" };
+  const int is_zones = s->cad.solids == VG_CAD_SOLIDS_ZONES;
   int has_role = 0;
   size_t n = 0;
 
+  *text = 0;
   for (size_t i = 0; i < s->n_patch; i++)
     has_role |= s->patch[i].role > VG_PATCH_WALL;
-  for (size_t i = 0; i < 4 && n < size; i++)
-    if (*list[i] || (i == 3 && has_role))
+  for (size_t i = 0; i < 5 && n < size; i++)
+    if (*list[i] || (i == 3 && has_role) || (i == 4 && is_zones))
       n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
                             name[i], list[i]);
   return text;
@@ -100,6 +114,8 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     give_list(m, "sheets", s->sheets, VG_PATCH_SHEET, on, role, from, err));
   VG_TRY(give_list(m, "zone_interfaces", s->zone_interfaces, VG_PATCH_INTERFACE,
                    on, role, from, err));
+  for (size_t i = 0; i < m->n_patch; i++) on[i] = m->patch[i].is_interface != 0;
+  VG_TRY(give(m, on, VG_PATCH_INTERFACE, "cad_solids", role, from, err));
   for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
     const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
 
