@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/child.h"
+#include "core/geometry/volume.h"
 #include "core/surface/surface_check.h"
 #include "io/cad/cad.h"
 #include "io/mesh/format.h"
@@ -291,6 +292,87 @@ static void solids_that_touch_are_united(void **state)
   }
 }
 
+/* Volume inside the triangles of the patches that are not interfaces. */
+static double outer_volume(const struct vg_mesh *m)
+{
+  double sum = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    if (!m->patch[m->tri_patch[t]].is_interface)
+      sum += vg_enclosed6(1, (const uint32_t(*)[3])m->tri + t,
+                          (const double(*)[3])m->point, m->point[0]) /
+             6;
+  return sum;
+}
+
+/* Solids as zones: the faces between two of them are one patch. */
+static void solids_are_zones(void **state)
+{
+  static const struct {
+    const char *path;
+    double volume;
+    const char *note;
+  } cases[] = {
+    { FILE_OF("stacked.brep"), 8, "faces between two of them: 1" },
+    { FILE_OF("glued.brep"), 8, "faces between two of them: 1" },
+    { FILE_OF("leaning.brep"), 8, "faces between two of them: 1" },
+    { FILE_OF("peg_glued.brep"), 8 + M_PI / 4, "faces between two of them: 2" },
+    { FILE_OF("peg.brep"), 8 + M_PI / 4, "faces between two of them: 2" },
+    { FILE_OF("filled.brep"), 64, "faces between two of them: 6" },
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+    struct notes n;
+    struct vg_cad_options o = options(&n);
+    struct vg_cad *c;
+    size_t n_interface = 0;
+
+    o.solids = VG_CAD_SOLIDS_ZONES;
+    c = parse_file(cases[i].path, VG_CAD_BREP, &o, &s);
+    says(&n, cases[i].note);
+    for (size_t p = 0; p < s.mesh.n_patch; p++)
+      if (s.mesh.patch[p].is_interface) {
+        n_interface++;
+        assert_string_equal(s.mesh.patch[p].name, "solid_1_to_solid_2");
+      }
+    assert_int_equal(n_interface, 1);
+    assert_int_equal(s.zones.n, 2);
+    assert_string_equal(s.zones.of[0].name, "solid_1");
+    assert_string_equal(s.zones.of[1].name, "solid_2");
+    near(fabs(outer_volume(&s.mesh)), cases[i].volume, 0.02);
+    vg_cad_surface_release(&s);
+    vg_cad_close(c);
+  }
+}
+
+static void some_solids_are_no_zones(void **state)
+{
+  static const struct {
+    const char *path, *text;
+  } cases[] = { { FILE_OF("inside.brep"), "overlap" },
+                { FILE_OF("crossing.brep"), "overlap" },
+                { FILE_OF("box.brep"), "solids in it: 1;" },
+                { FILE_OF("ring.brep"), "solids in it: 0;" } };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+    struct notes n;
+    struct vg_cad_options o = options(&n);
+    int unit;
+
+    o.solids = VG_CAD_SOLIDS_ZONES;
+    assert_int_equal(vg_cad_read(cases[i].path, VG_CAD_BREP, &o, NULL, &m,
+                                 &unit, NULL, &err),
+                     VG_ERR_INPUT);
+    assert_non_null(strstr(err.text, cases[i].text));
+    assert_int_equal(m.n_tri, 0);
+  }
+}
+
 /* Points are projected to all pieces of a face that the union divided. */
 static void pieces_of_a_face_have_its_number(void **state)
 {
@@ -519,7 +601,7 @@ static void files_that_are_not_cad_are_refused(void **state)
   vg_input_release(&in);
   vg_cad_close(c);
   assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, NULL, &m,
-                               &unit, &err),
+                               &unit, NULL, &err),
                    VG_ERR_IO);
 }
 
@@ -650,7 +732,7 @@ static void stops_on_request_and_at_the_time_limit(void **state)
   (void)state;
   o.stop.ask = at_once;
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
-                               &unit, &err),
+                               &unit, NULL, &err),
                    VG_ERR_STOPPED);
   assert_non_null(strstr(err.text, "stopped"));
   o.stop.ask = NULL;
@@ -658,7 +740,7 @@ static void stops_on_request_and_at_the_time_limit(void **state)
   o.angle = 1;
   o.chord = 1e-7;
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
-                               &unit, &err),
+                               &unit, NULL, &err),
                    VG_ERR_IO);
   assert_non_null(strstr(err.text, "time limit of 0.2 s"));
   assert_null(m.point);
@@ -1028,6 +1110,8 @@ int main(void)
     cmocka_unit_test(missing_curves_of_parameters_are_made),
     cmocka_unit_test(a_duplicate_face_is_removed),
     cmocka_unit_test(solids_that_touch_are_united),
+    cmocka_unit_test(solids_are_zones),
+    cmocka_unit_test(some_solids_are_no_zones),
     cmocka_unit_test(wrong_curves_of_a_cone_are_computed),
     cmocka_unit_test(a_face_covered_in_part_is_an_error),
     cmocka_unit_test(pieces_of_a_face_have_its_number),

@@ -8,15 +8,19 @@
 #   rotor  `vanguard demo rotor` in simpleFoam, with the MRFProperties of
 #          docs/guide/zones.md: the initial residuals fall below 1e-3, and the
 #          blades turn
-#   fins   `vanguard demo fins` in splitMeshRegions and chtMultiRegionFoam: the
-#          100 W of the solid arrive in the fluid
+#   fins   `vanguard demo fins` in splitMeshRegions, simpleFoam and
+#          chtMultiRegionFoam: the 100 W of the solid arrive in the flow and in
+#          the outflow
+#   exchanger  `vanguard demo exchanger` in the same programs: the hot fluid loses
+#          the heat that the cold one gains
 #   baffle a duct with a baffle and a sheet, both with layers, in simpleFoam: the
 #          initial residuals fall below 1e-3, and all of the flow passes the
 #          sheet
 #   passage  `vanguard demo passage` between cyclic patches, in simpleFoam: the
 #          initial residuals fall below 1e-3, and the blade turns the flow
 #   wake   half of the ONERA M6 (--data) with its wake as a sheet: layers on both
-# checkMesh finds no fault in the meshes, and none in the two regions of fins.
+# checkMesh finds no fault in the meshes, and none in the regions of
+# fins and exchanger.
 # Without NAME: all of them.
 # Exit status: 0 all passed, 1 a failure, 2 usage, 77 no OpenFOAM.
 set -uo pipefail
@@ -32,11 +36,11 @@ while [ $# -gt 0 ]; do
       declare "${1#--}=$2"
       shift 2 ;;
     -h|--help) usage; exit 0 ;;
-    rotor|fins|baffle|passage|wake) break ;;
+    rotor|fins|exchanger|baffle|passage|wake) break ;;
     *) usage >&2; exit 2 ;;
   esac
 done
-[ $# -gt 0 ] || set -- rotor fins baffle passage wake
+[ $# -gt 0 ] || set -- rotor fins exchanger baffle passage wake
 
 if ! command -v checkMesh >/dev/null; then
   echo "SKIP: no OpenFOAM (checkMesh is not in PATH)"
@@ -97,6 +101,8 @@ sound() {
 . "$here/rotor.bash"
 # shellcheck source=verification/zones/fins.bash
 . "$here/fins.bash"
+# shellcheck source=verification/zones/exchanger.bash
+. "$here/exchanger.bash"
 # shellcheck source=verification/zones/baffle.bash
 . "$here/baffle.bash"
 # shellcheck source=verification/zones/passage.bash

@@ -91,6 +91,12 @@ static const char layer_comment[] =
   "# isotropic cells only; '--cells mixed' does not divide prisms into\n"
   "# tetrahedra.\n";
 
+static const char walls_comment[] =
+  "# Layers grow on the patches in walls: the casing, and the sides of the\n"
+  "# pipe that face the fluids. 'vanguard mesh --layers no' generates\n"
+  "# isotropic cells only; '--cells mixed' does not divide prisms into\n"
+  "# tetrahedra.\n";
+
 /* Returns 1 if the case has layers. */
 static int set_layers(const char *name, struct vg_settings *s)
 {
@@ -127,7 +133,7 @@ static vg_status ask_for_boom(const struct vg_mach_extent *e,
 }
 
 /* The roles of the sheets, and their names, which a .ugrid does not hold; the
- * zone of an interface. */
+ * zones that they enclose. */
 static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
                                 struct vg_error *err)
 {
@@ -146,13 +152,15 @@ static vg_status ask_for_sheets(const struct vg_demo *d, struct vg_settings *s,
     snprintf(row.name, sizeof row.name, "%s", p->name);
     st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
   }
-  if (st < 0 || !*d->zone.name) return st;
-  vg_settings_row_default(VG_TABLE_ZONES, &zone);
-  snprintf(zone.name, sizeof zone.name, "%s", d->zone.name);
-  zone.kind = d->zone.kind;
-  if (zone.kind == VG_ZONE_SOLID) zone.mesh = VG_ANSWER_YES;
-  memcpy(zone.seed, d->seed, sizeof zone.seed);
-  return vg_settings_add(s, VG_TABLE_ZONES, &zone, err);
+  for (size_t i = 0; i < d->n_zone && st >= 0; i++) {
+    vg_settings_row_default(VG_TABLE_ZONES, &zone);
+    snprintf(zone.name, sizeof zone.name, "%s", d->zone[i].name);
+    zone.kind = d->zone[i].kind;
+    if (zone.kind == VG_ZONE_SOLID) zone.mesh = VG_ANSWER_YES;
+    memcpy(zone.seed, d->seed[i], sizeof zone.seed);
+    st = vg_settings_add(s, VG_TABLE_ZONES, &zone, err);
+  }
+  return st;
 }
 
 /* A pair of periodic patches, whose transform the run finds. */
@@ -236,6 +244,11 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
   s->hmax = demo->sizing.h_max;
   s->surface_sizes = demo->sizing.from_surface;
   s->farfield.kind = VG_DOMAIN_NONE;
+  if (demo->walls) {
+    snprintf(s->layer.walls, sizeof s->layer.walls, "%s", demo->walls);
+    s->layer.first = s->hmax / 4;
+    s->layer.count = 4;
+  }
   if (demo->farfield.kind == VG_FARFIELD_MACH)
     return ask_for_boom(&demo->farfield.extent, &demo->source[0], s, err);
   for (size_t i = 0; i < demo->n_source && st >= 0; i++)
@@ -331,14 +344,17 @@ static vg_status write_project(char *const path[3], const char *stem,
   has_layers = set_layers(name, &s);
   VG_TRY(list_patches(demo, &all, err));
   VG_TRY(write_files(stem, name, &surface, &all, &s,
-                     has_layers ? layer_comment : NULL, err));
+                     has_layers    ? layer_comment
+                     : demo->walls ? walls_comment
+                                   : NULL,
+                     err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));
   printf("%s: boundary conditions of %zu patches\n", path[1], all.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_text_count((unsigned long long)demo->n_cell, cells),
-         has_layers ? " without the viscous layers" : "");
+         has_layers || demo->walls ? " without the viscous layers" : "");
   if (wanted && demo->n_cell > 1.05 * (double)wanted)
     printf("  %s cells were requested, but the geometry needs more\n",
            vg_text_count(wanted, cells));

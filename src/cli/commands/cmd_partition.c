@@ -24,11 +24,11 @@
 #include "run/report/report.h"
 #include "run/stages/output.h"
 
-enum { KEY_WEIGHTS = 500, KEY_WRITE };
+enum { KEY_WEIGHTS = 500, KEY_ZONE_WEIGHTS, KEY_WRITE };
 
 struct arguments {
   struct vg_cli_one one;
-  const char *out;
+  const char *out, *zone_weights; /* NULL: not given */
   struct vg_solver_options options;
   struct vg_foam_options foam;
   int to_part, to_vtu, to_foam;
@@ -43,6 +43,7 @@ struct run {
   size_t n_cell;
   struct vg_solver_layers layers;
   unsigned char *is_wall;
+  double *zone_weight; /* [zones], or NULL */
   uint32_t *part;
   struct vg_solver_report report;
   char *stem;
@@ -122,6 +123,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'n': read_count(a, arg, state); return 0;
   case 'o': a->out = arg; return 0;
   case KEY_WEIGHTS: read_weights(a, arg, state); return 0;
+  case KEY_ZONE_WEIGHTS: a->zone_weights = arg; return 0;
   case KEY_WRITE: read_forms(a, arg, state); return 0;
   default: break;
   }
@@ -225,6 +227,59 @@ done:
   return st;
 }
 
+/* The weight of one item of the list, "pipe=0.2" or "2=0.2"; removes it. */
+static vg_status read_zone_weight(struct run *r, char *item,
+                                  struct vg_error *err)
+{
+  const struct vg_mesh *m = &r->mesh;
+  char *value = strrchr(item, '='), *end;
+  double weight;
+  size_t z = 0;
+
+  if (!value || value == item)
+    return vg_fail(err, VG_ERR_USAGE,
+                   "--zone-weights %s: items are zones with weights, as in "
+                   "rotor=1.5,2=0.3",
+                   item);
+  *value++ = 0;
+  weight = strtod(value, &end);
+  if (end == value || *end || !(weight >= 1e-3 && weight <= 1e3))
+    return vg_fail(err, VG_ERR_USAGE,
+                   "--zone-weights: the weight of zone %s must be a number "
+                   "from 0.001 to 1000, not '%s'",
+                   item, value);
+  while (z < m->n_zone && strcmp(m->zone[z].name, item) != 0) z++;
+  if (z == m->n_zone && strspn(item, "0123456789") == strlen(item))
+    for (z = 0; z < m->n_zone && m->zone[z].id != atoll(item);) z++;
+  if (z == m->n_zone)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "--zone-weights: %s has no zone %s; 'vanguard check' lists "
+                   "its zones",
+                   r->path, item);
+  r->zone_weight[z] = weight;
+  return VG_OK;
+}
+
+/* Zones that are not listed have weight 1. */
+static vg_status read_zone_weights(struct run *r, struct vg_error *err)
+{
+  char *list, *rest, *item;
+  vg_status st = VG_OK;
+
+  if (!r->a->zone_weights) return VG_OK;
+  r->zone_weight = vg_alloc(r->mesh.n_zone, sizeof *r->zone_weight);
+  rest = list = strdup(r->a->zone_weights);
+  if (!r->zone_weight || !list) {
+    free(list);
+    return vg_fail_memory(err, "the weights of the zones");
+  }
+  for (size_t z = 0; z < r->mesh.n_zone; z++) r->zone_weight[z] = 1;
+  while (st >= 0 && (item = strsep(&rest, ",")))
+    st = read_zone_weight(r, item, err);
+  free(list);
+  return st;
+}
+
 /* A list of parts has the order of the cells of the file. */
 static vg_status check_order(const struct run *r, struct vg_error *err)
 {
@@ -300,6 +355,7 @@ done:
 static vg_status run_all(struct run *r, struct vg_display *show,
                          struct vg_error *err)
 {
+  struct vg_solver_options options = r->a->options;
   const char *path;
   size_t n;
   vg_status st;
@@ -314,8 +370,10 @@ static vg_status run_all(struct run *r, struct vg_display *show,
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_mesh(r, err));
   VG_TRY(check_order(r, err));
+  VG_TRY(read_zone_weights(r, err));
+  options.zone_weight = r->zone_weight;
   vg_display_update(show, "partition", r->n_cell, 0);
-  VG_TRY(vg_solver_part(&r->mesh, &r->layers, &r->a->options, path, r->part,
+  VG_TRY(vg_solver_part(&r->mesh, &r->layers, &options, path, r->part,
                         &r->report, err));
   vg_display_update(show, "write", r->n_cell, 0);
   st = write_files(r, show, err);
@@ -378,6 +436,7 @@ static void release(struct run *r)
   free(r->path);
   free(r->other);
   free(r->is_wall);
+  free(r->zone_weight);
   free(r->part);
   free(r->stem);
   vg_outputs_release(&r->outputs);
@@ -403,6 +462,10 @@ int vg_cmd_partition(int argc, char **argv)
     { "weights", KEY_WEIGHTS, "LIST", 0,
       "Work per cell by cell type, as in "
       "tet=1,pyr=1.2,pri=1.5,hex=2 [default 1 for all]",
+      0 },
+    { "zone-weights", KEY_ZONE_WEIGHTS, "LIST", 0,
+      "Factors on the work of the cells of zones, by name or number, as in "
+      "rotor=1.5,2=0.3 [default 1 for all]",
       0 },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
     { "quiet", 'q', NULL, 0, "Do not show progress", 0 },

@@ -28,7 +28,7 @@
 #define SPHERE_FINE 0.02
 #define SPHERE_COARSE 1.5
 
-enum kind { BOX, SPHERE, WING, BOOM, PASSAGE };
+enum kind { BOX, SPHERE, WING, BOOM, PASSAGE, EXCHANGER };
 
 static const struct vg_demo_case cases[] = {
   { "box", "unit cube, uniform spacing", 100000 },
@@ -43,6 +43,7 @@ static const struct vg_demo_case cases[] = {
   { "disk", "sphere behind an actuator disk, which is a sheet", 300000 },
   { "rotor", "impeller in a rotating zone of a box", 100000 },
   { "fins", "solid with fins, a zone of a box", 100000 },
+  { "exchanger", "two fluids on both sides of a pipe, three zones", 100000 },
   { "passage", "turbine blade with a tip gap, between periodic sides", 100000 },
 };
 
@@ -67,6 +68,7 @@ static const struct entry {
   { SPHERE, { 0, 0 }, vg_demo_add_disk },
   { BOX, { 0, 0 }, vg_demo_add_rotor },
   { BOX, { 0, 0 }, vg_demo_add_fins },
+  { EXCHANGER, { 0, 0 }, NULL },
   { PASSAGE, { 0, 0 }, NULL },
 };
 
@@ -179,6 +181,10 @@ static void make_law(struct scaled *s)
   law->growth = 1.2;
   law->n = 1;
   switch (s->entry->kind) {
+  case EXCHANGER:
+    law->n = 0;
+    law->h_max = f;
+    break;
   case BOX:
     law->h_max = f;
     law->source[0].kind = VG_SOURCE_BOX;
@@ -242,6 +248,14 @@ static double n_cell_of(struct scaled *s,
          cubes(lo, hi, size, in_fluid, s);
 }
 
+/* Volume of a case with uniform spacing; 0: others. */
+static double uniform_volume(const struct entry *e)
+{
+  return e->kind == BOX       ? 1
+       : e->kind == EXCHANGER ? vg_demo_exchanger_volume()
+                              : 0;
+}
+
 static double law_estimate(struct scaled *s)
 {
   make_law(s);
@@ -261,13 +275,16 @@ static double cube_root(double x)
  * a step by the cube root of the ratio never overshoots. */
 static double fit_factor(struct scaled *s, double n_cell)
 {
+  const double volume = uniform_volume(s->entry);
+  const double most = s->entry->kind == BOX ? 0.5 : 0.07;
   double n = 0;
 
-  if (s->entry->kind == BOX) {
-    s->factor = cube_root(VG_DEMO_CELLS_PER_CUBE / n_cell);
-    if (s->factor > 0.5) s->factor = 0.5;
+  if (volume > 0) {
+    s->factor = cube_root(VG_DEMO_CELLS_PER_CUBE * volume / n_cell);
+    if (s->factor > most) s->factor = most;
     make_law(s);
-    return VG_DEMO_CELLS_PER_CUBE / (s->factor * s->factor * s->factor);
+    return VG_DEMO_CELLS_PER_CUBE * volume /
+           (s->factor * s->factor * s->factor);
   }
   for (int i = 0; i < 30; i++) {
     double step;
@@ -358,6 +375,7 @@ static vg_status build(const struct scaled *s, struct vg_demo *d,
   d->n_source = s->law.n;
   switch (s->entry->kind) {
   case BOX: return box_surface(s, &d->surface, err);
+  case EXCHANGER: return vg_demo_exchanger_surface(&s->law, d, err);
   case PASSAGE:
     d->periodic[0] = "lo";
     d->periodic[1] = "hi";
@@ -403,15 +421,16 @@ static vg_status make(struct scaled *s, double n_cell, struct vg_demo *d,
                       struct vg_error *err)
 {
   const int n_turn = s->entry->kind == BOOM ? FIT_TURNS_STRETCHED : FIT_TURNS;
+  const int is_uniform = uniform_volume(s->entry) > 0;
   double ask = n_cell, n = 0;
   vg_status st = VG_OK;
 
   s->factor = FACTOR_MAX;
-  if (s->entry->kind == BOX) {
+  if (is_uniform) {
     n = fit_factor(s, n_cell);
     VG_TRY(build(s, d, err));
   }
-  for (int turn = 0; s->entry->kind != BOX && turn < n_turn; turn++) {
+  for (int turn = 0; !is_uniform && turn < n_turn; turn++) {
     fit_factor(s, ask);
     VG_TRY(build(s, d, err));
     VG_TRY(field_estimate(s, d, &n, err));

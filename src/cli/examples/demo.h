@@ -30,16 +30,21 @@ struct vg_demo_case {
 /** All cases. *n out: their number. Static storage. */
 const struct vg_demo_case *vg_demo_cases(size_t *n);
 
+enum { VG_DEMO_ZONES = 3 };
+
 /** A case ready to be meshed. */
 struct vg_demo {
-  struct vg_mesh surface;  /* closed, normals point into the fluid; patches
-                              have names and conditions of both solvers */
-  struct vg_mesh sheet;    /* triangles of inner surfaces, without points of the
-                              surface: interfaces (is_interface), other sheets
-                              (is_sheet), baffles; empty in most cases */
-  struct vg_zone zone;     /* the zone of the interface, if it has a
-                              name; a solid has cells */
-  double seed[3];          /* a point in it */
+  struct vg_mesh surface; /* closed, normals point into the fluid; patches
+                             have names and conditions of both solvers */
+  struct vg_mesh sheet;   /* triangles of inner surfaces, without points of the
+                             surface: interfaces (is_interface), other sheets
+                             (is_sheet), baffles; empty in most cases */
+  size_t n_zone;
+  struct vg_zone zone[VG_DEMO_ZONES]; /* [n_zone] names and kinds; solids have
+                                         cells */
+  double seed[VG_DEMO_ZONES][3];      /* a point in each */
+  const char *walls;       /* list of the patches with layers, or NULL: those
+                              with viscous conditions; static */
   const char *periodic[2]; /* names of a pair of periodic patches, or NULL;
                               static */
   size_t n_body_tri;       /* the first triangles of the surface, which are the
@@ -68,8 +73,9 @@ struct vg_demo {
  *                along the Mach cone, with cells stretched along it;
  *                "disk" the sphere behind an actuator disk; "rotor" the box
  *                with an impeller in a rotating zone; "fins" the box with a
- *                solid with fins; "passage" one blade of a turbine between
- *                periodic sides
+ *                solid with fins; "exchanger" two fluids on both sides of
+ *                a pipe; "passage" one blade of a turbine between periodic
+ *                sides
  * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
  * @param out     owned by the caller, vg_demo_release; unchanged on failure

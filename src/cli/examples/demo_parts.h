@@ -84,4 +84,12 @@ vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
 vg_status vg_demo_add_fins(const struct vg_demo_spacing *law, struct vg_demo *d,
                            struct vg_error *err);
 
+/** demo_sheets.c: a pipe in a round casing, a solid between two fluids:
+ * surface, sheets, zones and walls of *d, with edges of law->h_max. */
+vg_status vg_demo_exchanger_surface(const struct vg_demo_spacing *law,
+                                    struct vg_demo *d, struct vg_error *err);
+
+/** Volume inside its casing. */
+double vg_demo_exchanger_volume(void);
+
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Inner surfaces of the examples: an actuator disk; a rotor in its zone; a
- * solid with fins. */
+ * solid with fins; a heat exchanger. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -30,6 +30,12 @@
 #define FIN_Z 0.34
 #define FIN_FACES 178 /* squares of its surface */
 
+/* The heat exchanger: a pipe along x in a round casing, between plane ends. */
+#define PIPE_INSIDE 0.2
+#define PIPE_OUTSIDE 0.3
+#define CASING_RADIUS 0.5
+#define CASING_LENGTH 1.5
+
 static vg_status make_room(struct vg_mesh *m, size_t n_point, size_t n_tri,
                            struct vg_error *err)
 {
@@ -49,6 +55,15 @@ static vg_status add_patch(struct vg_demo *d, const char *name,
     m, (int32_t)(d->surface.n_patch + m->n_patch) + 1, name);
 
   return at == SIZE_MAX ? vg_fail_memory(err, "a patch") : VG_OK;
+}
+
+static void add_zone(struct vg_demo *d, const char *name, int32_t kind,
+                     const double seed[3])
+{
+  assert(d->n_zone < VG_DEMO_ZONES);
+  snprintf(d->zone[d->n_zone].name, VG_NAME_MAX, "%s", name);
+  d->zone[d->n_zone].kind = kind;
+  memcpy(d->seed[d->n_zone++], seed, 3 * sizeof *seed);
 }
 
 static void add_triangle(struct vg_mesh *m, uint32_t patch, size_t a, size_t b,
@@ -84,8 +99,8 @@ static void put_on_disk(const double *centre, uint32_t side, double share,
 
 /* Adds ring k of a disk, at radius r: its 6 k points, and the triangles to ring
  * k - 1, whose points come last. */
-static void add_ring(struct vg_mesh *m, const double *centre, uint32_t k,
-                     double r)
+static void add_ring(struct vg_mesh *m, uint32_t patch, const double *centre,
+                     uint32_t k, double r)
 {
   const size_t outer = m->n_point, m_in = 6 * ((size_t)k - 1);
   const size_t inner = k > 1 ? outer - m_in : outer - 1;
@@ -97,9 +112,9 @@ static void add_ring(struct vg_mesh *m, const double *centre, uint32_t k,
     const size_t in = m_in ? inner + (side * (k - 1) + at) % m_in : inner;
     const size_t next = m_in ? inner + (side * (k - 1) + at + 1) % m_in : 0;
 
-    add_triangle(m, 0, in, outer + i, outer + (i + 1) % (6 * k));
+    add_triangle(m, patch, in, outer + i, outer + (i + 1) % (6 * k));
     if (at + 1 < k) /* not at a corner of the inner ring */
-      add_triangle(m, 0, in, outer + i + 1, next);
+      add_triangle(m, patch, in, outer + i + 1, next);
   }
 }
 
@@ -109,7 +124,7 @@ static void add_disk(struct vg_mesh *m, const double *centre, double r,
                      uint32_t n)
 {
   memcpy(m->point[m->n_point++], centre, sizeof *m->point);
-  for (uint32_t k = 1; k <= n; k++) add_ring(m, centre, k, r * k / n);
+  for (uint32_t k = 1; k <= n; k++) add_ring(m, 0, centre, k, r * k / n);
 }
 
 static uint32_t edges_along(double length, double size)
@@ -151,30 +166,39 @@ static void join_rows(struct vg_mesh *m, uint32_t patch, size_t a, size_t b,
   }
 }
 
+/* Joins two rings of n points at different x by `rows` rows. */
+static void join_rings(struct vg_mesh *m, uint32_t patch, size_t from,
+                       size_t to, size_t n, uint32_t rows)
+{
+  const double x0 = m->point[from][0], x1 = m->point[to][0];
+  size_t before = from;
+
+  for (uint32_t row = 1; row < rows; row++) {
+    const double x = x0 + (x1 - x0) * row / rows;
+    const size_t at = m->n_point;
+
+    for (size_t i = 0; i < n; i++) {
+      memcpy(m->point[m->n_point], m->point[from + i], sizeof *m->point);
+      m->point[m->n_point++][0] = x;
+    }
+    join_rows(m, patch, before, at, n, 1);
+    before = at;
+  }
+  join_rows(m, patch, before, to, n, 1);
+}
+
 /* Two disks of n rings and the side between them, with `rows` rows. */
 static void add_cylinder(struct vg_mesh *m, uint32_t n, uint32_t rows)
 {
   const double end[2][3] = { { .5 - ROTOR_HALF, .5, .5 },
                              { .5 + ROTOR_HALF, .5, .5 } };
-  size_t rim[2], before;
+  size_t rim[2];
 
   for (int k = 0; k < 2; k++) {
     add_disk(m, end[k], ROTOR_RADIUS, n);
     rim[k] = m->n_point - 6 * (size_t)n;
   }
-  before = rim[0];
-  for (uint32_t row = 1; row < rows; row++) {
-    const double x = end[0][0] + (end[1][0] - end[0][0]) * row / rows;
-    const size_t at = m->n_point;
-
-    for (size_t i = 0; i < 6 * (size_t)n; i++) {
-      memcpy(m->point[m->n_point], m->point[rim[0] + i], sizeof *m->point);
-      m->point[m->n_point++][0] = x;
-    }
-    join_rows(m, 0, before, at, 6 * (size_t)n, 1);
-    before = at;
-  }
-  join_rows(m, 0, before, rim[1], 6 * (size_t)n, 1);
+  join_rings(m, 0, rim[0], rim[1], 6 * (size_t)n, rows);
 }
 
 /* The blade in the direction (y, z), of n_along by n_across quadrilaterals. */
@@ -224,9 +248,7 @@ vg_status vg_demo_add_rotor(const struct vg_demo_spacing *law,
   add_cylinder(m, n, rows);
   for (int k = 0; k < 4; k++)
     add_blade(m, (k == 0) - (k == 2), (k == 1) - (k == 3), along, across);
-  snprintf(d->zone.name, VG_NAME_MAX, "rotor");
-  d->zone.kind = VG_ZONE_ROTATING;
-  memcpy(d->seed, centre, sizeof centre);
+  add_zone(d, "rotor", VG_ZONE_ROTATING, centre);
 done:
   return st;
 }
@@ -321,10 +343,155 @@ vg_status vg_demo_add_fins(const struct vg_demo_spacing *law, struct vg_demo *d,
   add_solid(&l);
   assert(l.m->n_tri == 2 * n_face && l.m->n_point == n_face + 2);
   l.m->patch[0].is_sheet = l.m->patch[0].is_interface = 1;
-  snprintf(d->zone.name, VG_NAME_MAX, "fins");
-  d->zone.kind = VG_ZONE_SOLID;
-  memcpy(d->seed, seed, sizeof seed);
+  add_zone(d, "fins", VG_ZONE_SOLID, seed);
 done:
   free(l.at);
+  return st;
+}
+
+/* --- a heat exchanger --------------------------------------------------------
+ */
+
+enum { CASING, HOT_IN, HOT_OUT, COLD_IN, COLD_OUT, ENDS, N_SURFACE_PATCH };
+
+/* Rings of an end up to the inside of the pipe, to its outside, to the casing.
+ */
+struct rings {
+  uint32_t to[3];
+};
+
+static const double ring_radius[3] = { PIPE_INSIDE, PIPE_OUTSIDE,
+                                       CASING_RADIUS };
+
+double vg_demo_exchanger_volume(void)
+{
+  return 3.14159265358979323846 * CASING_RADIUS * CASING_RADIUS * CASING_LENGTH;
+}
+
+static struct rings count_rings(double h)
+{
+  static const uint32_t least[3] = { 3, 2, 3 };
+  struct rings r;
+
+  for (int k = 0; k < 3; k++) {
+    const double wide = ring_radius[k] - (k ? ring_radius[k - 1] : 0);
+    const double n = wide / h + 0.5;
+
+    r.to[k] = n < least[k] ? least[k] : n > 1000 ? 1000 : (uint32_t)n;
+    if (k) r.to[k] += r.to[k - 1];
+  }
+  return r;
+}
+
+/* The first of the 6 k points of ring k of a disk that begins at a point. */
+static size_t ring_at(size_t disk, uint32_t k)
+{
+  return disk + 1 + 3 * (size_t)k * (k - 1);
+}
+
+/* The end at x, with normals along x, or against it (flip). */
+static void add_end(struct vg_mesh *m, const struct rings *r, double x,
+                    const uint32_t patch[3], int flip)
+{
+  const double centre[3] = { x, 0, 0 };
+  const size_t first = m->n_tri;
+  uint32_t at = 0;
+
+  memcpy(m->point[m->n_point++], centre, sizeof *m->point);
+  for (uint32_t k = 1; k <= r->to[2]; k++) {
+    if (k > r->to[at]) at++;
+    const uint32_t from = at ? r->to[at - 1] : 0;
+    const double inner = at ? ring_radius[at - 1] : 0;
+
+    add_ring(m, patch[at], centre, k,
+             inner +
+               (ring_radius[at] - inner) * (k - from) / (r->to[at] - from));
+  }
+  for (size_t t = first; flip && t < m->n_tri; t++) {
+    const uint32_t v = m->tri[t][1];
+
+    m->tri[t][1] = m->tri[t][2];
+    m->tri[t][2] = v;
+  }
+}
+
+static vg_status add_surface_patches(struct vg_mesh *m, struct vg_error *err)
+{
+  static const struct {
+    const char *name;
+    int32_t bc, fun3d;
+  } patch[N_SURFACE_PATCH] = {
+    { "casing", 4, 4000 },      { "hot_in", 1001, 7011 },
+    { "hot_out", 1002, 5051 },  { "cold_in", 1001, 7011 },
+    { "cold_out", 1002, 5051 }, { "pipe_ends", 5, 3000 }
+  };
+
+  for (int i = 0; i < N_SURFACE_PATCH; i++) {
+    const size_t at = vg_mesh_add_patch(m, i + 1, patch[i].name);
+
+    if (at == SIZE_MAX) return vg_fail_memory(err, "a patch");
+    m->patch[at].bc = m->patch[at].family = patch[i].bc;
+    m->patch[at].bc_fun3d = patch[i].fun3d;
+  }
+  return VG_OK;
+}
+
+/* The sides of the pipe, with the points of ring to[k] of both ends. The fluids
+ * are behind their triangles. */
+static vg_status add_pipe(struct vg_demo *d, const struct rings *r,
+                          uint32_t rows, struct vg_error *err)
+{
+  static const char *const name[2] = { "pipe_inside", "pipe_outside" };
+  const struct vg_mesh *ends = &d->surface;
+  const size_t n = 6 * ((size_t)r->to[0] + r->to[1]);
+  const size_t disk[2] = { 0, ring_at(0, r->to[2] + 1) };
+  struct vg_mesh *m = &d->sheet;
+  vg_status st;
+
+  VG_TRY(make_room(m, n * (rows + 1), 2 * n * rows, err));
+  for (uint32_t k = 0; k < 2; k++) {
+    const size_t n_ring = 6 * (size_t)r->to[k], from = m->n_point;
+
+    VG_TRY(add_patch(d, name[k], err));
+    m->patch[k].is_sheet = m->patch[k].is_interface = 1;
+    for (int e = 0; e < 2; e++) {
+      memcpy(m->point[m->n_point],
+             ends->point[ring_at(disk[e ^ (k == 0)], r->to[k])],
+             n_ring * sizeof *m->point);
+      m->n_point += n_ring;
+    }
+    join_rings(m, k, from, from + n_ring, n_ring, rows);
+  }
+done:
+  return st;
+}
+
+vg_status vg_demo_exchanger_surface(const struct vg_demo_spacing *law,
+                                    struct vg_demo *d, struct vg_error *err)
+{
+  static const uint32_t patch[2][3] = { { HOT_IN, ENDS, COLD_OUT },
+                                        { HOT_OUT, ENDS, COLD_IN } };
+  static const double seed[3][3] = { { .5 * CASING_LENGTH, .04,
+                                       .03 }, /* at the radii 0.05, 0.25, 0.4 */
+                                     { .5 * CASING_LENGTH, .2, .15 },
+                                     { .5 * CASING_LENGTH, .32, .24 } };
+  const struct rings r = count_rings(law->h_max);
+  const uint32_t rows = edges_along(CASING_LENGTH, law->h_max);
+  const size_t n = r.to[2];
+  struct vg_mesh *m = &d->surface;
+  vg_status st;
+
+  VG_TRY(make_room(m, 6 * n * (n + 1) + 2 + 6 * n * (rows - 1),
+                   12 * n * (n + rows), err));
+  VG_TRY(add_surface_patches(m, err));
+  for (int e = 0; e < 2; e++) add_end(m, &r, e * CASING_LENGTH, patch[e], e);
+  join_rings(m, CASING, ring_at(0, r.to[2]),
+             ring_at(ring_at(0, r.to[2] + 1), r.to[2]), 6 * n, rows);
+  VG_TRY(add_pipe(d, &r, rows, err));
+  add_zone(d, "hot", VG_ZONE_FLUID, seed[0]);
+  add_zone(d, "pipe", VG_ZONE_SOLID, seed[1]);
+  add_zone(d, "cold", VG_ZONE_FLUID, seed[2]);
+  d->walls = "casing,pipe_inside_back,pipe_outside_back";
+done:
   return st;
 }

@@ -39,6 +39,7 @@ void vg_cad_surface_release(struct vg_cad_surface *s)
   free(s->segment);
   free(s->segment_curve);
   free(s->area);
+  free(s->zones.of);
   memset(s, 0, sizeof *s);
 }
 
@@ -313,11 +314,33 @@ static vg_status take_patches(struct call *k, uint64_t n,
 
     s->area[i] = from[i].area;
     to->id = from[i].id;
+    to->is_interface = from[i].is_interface != 0;
     to->bc = to->bc_fun3d = to->family = VG_BC_NONE;
     memcpy(to->name, from[i].name, sizeof to->name - 1);
   }
   m->n_patch = n;
 done:
+  free(from);
+  return st;
+}
+
+static vg_status take_zones(struct call *k, uint64_t n, struct vg_cad_zones *z,
+                            struct vg_error *err)
+{
+  struct vg_cad_place *from = NULL;
+  vg_status st = take_array(k, n, sizeof *from, &from, err);
+
+  if (st >= 0 && n) {
+    z->of = vg_calloc(n, sizeof *z->of);
+    if (!z->of) {
+      end_child(k->cad);
+      st = vg_fail_memory(err, "the zones");
+    }
+  }
+  for (; st >= 0 && z->n < n; z->n++) {
+    memcpy(z->of[z->n].seed, from[z->n].seed, sizeof from->seed);
+    memcpy(z->of[z->n].name, from[z->n].name, sizeof from->name - 1);
+  }
   free(from);
   return st;
 }
@@ -360,6 +383,7 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   VG_TRY(take_array(k, n.n_segment, sizeof *s->segment_curve, &s->segment_curve,
                     err));
   VG_TRY(take_patches(k, n.n_patch, s, err));
+  VG_TRY(take_zones(k, n.n_zone, &s->zones, err));
   if (!is_sound(s)) {
     st = gone(k, err);
     goto done;
@@ -615,10 +639,17 @@ vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
   return await_surface(&k, out, err);
 }
 
+static void take_over(struct vg_cad_zones *from, struct vg_cad_zones *to)
+{
+  if (!to) return;
+  *to = *from;
+  *from = (struct vg_cad_zones){ 0, NULL };
+}
+
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
                       const struct vg_cad_options *options,
                       struct vg_cad_model *keep, struct vg_mesh *out, int *unit,
-                      struct vg_error *err)
+                      struct vg_cad_zones *zones, struct vg_error *err)
 {
   const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -637,12 +668,14 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
     struct vg_mesh copy = VG_MESH_INIT;
 
     VG_TRY(vg_mesh_copy(&copy, &s.mesh, err));
+    take_over(&s.zones, zones);
     *keep = (struct vg_cad_model){ c, s };
     c = NULL;
     s = (struct vg_cad_surface)VG_CAD_SURFACE_INIT;
     vg_mesh_move(out, &copy);
   } else {
     vg_mesh_move(out, &s.mesh);
+    take_over(&s.zones, zones);
   }
 done:
   vg_cad_close(c);

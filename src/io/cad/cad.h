@@ -50,10 +50,12 @@ enum vg_cad_patches {
 
 /** Which faces of a file with solids are read. */
 enum vg_cad_solids {
-  VG_CAD_SOLIDS_AUTO, /* All but plane faces that belong to no solid, bound
-                         nothing and touch nothing: datum planes, sketches. */
-  VG_CAD_SOLIDS_ONLY, /* Those of solids. */
-  VG_CAD_SOLIDS_ALL,  /* All. */
+  VG_CAD_SOLIDS_AUTO,  /* All but plane faces that belong to no solid, bound
+                          nothing and touch nothing: datum planes, sketches. */
+  VG_CAD_SOLIDS_ONLY,  /* Those of solids. */
+  VG_CAD_SOLIDS_ALL,   /* All. */
+  VG_CAD_SOLIDS_ZONES, /* Those of solids, each of which is a zone: a face that
+                          two solids share is an interface. */
   VG_CAD_SOLIDS_N
 };
 
@@ -95,6 +97,17 @@ struct vg_cad_options {
     .chord = 2e-3, .angle = 15                                                 \
   } /* S15 */
 
+/** A solid as a zone. */
+struct vg_cad_zone {
+  double seed[3]; /* a point in it */
+  char name[VG_NAME_MAX];
+};
+
+struct vg_cad_zones {
+  size_t n;
+  struct vg_cad_zone *of; /* [n] owned */
+};
+
 /** A triangulated model. Faces and curves have the numbers of the file's faces
  * and edges, counted from 1 in the order of its shells. Numbers of dropped
  * faces and curves are not used. */
@@ -118,6 +131,9 @@ struct vg_cad_surface {
                      way; NAN: not known. */
   int unit;       /* enum vg_cad_unit, of the result; FILE: not known */
   size_t n_solid; /* number of solids of the file */
+  /* With VG_CAD_SOLIDS_ZONES: the solids, in the order of the file. Patches
+   * with is_interface have the faces between two of them, once each. */
+  struct vg_cad_zones zones;
 };
 #define VG_CAD_SURFACE_INIT                                                    \
   {                                                                            \
@@ -198,9 +214,11 @@ void vg_cad_model_release(struct vg_cad_model *m);
  * @param o     NULL for defaults
  * @param keep  empty; out: the child, with a copy of the surface; NULL: the
  *              child is ended
- * @param unit  out: unit of the surface, as in struct vg_cad_surface */
+ * @param unit  out: unit of the surface, as in struct vg_cad_surface
+ * @param zones empty; out: owned by the caller; may be NULL */
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
                       const struct vg_cad_options *o, struct vg_cad_model *keep,
-                      struct vg_mesh *out, int *unit, struct vg_error *err);
+                      struct vg_mesh *out, int *unit,
+                      struct vg_cad_zones *zones, struct vg_error *err);
 
 #endif

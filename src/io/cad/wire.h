@@ -64,18 +64,24 @@ struct vg_cad_tell {
 
 /* Sent before the arrays, which follow in this order: points [][3], triangles
  * [][3], faces of triangles, patches of triangles, segments [][2], curves of
- * segments, patches. */
+ * segments, patches, zones. */
 struct vg_cad_counts {
   uint64_t n_point, n_tri, n_segment, n_patch;
   int64_t is_solid;
   double volume;
   int64_t unit; /* of the result; 0: not known */
   int64_t n_solid;
+  uint64_t n_zone; /* zones, which follow the patches */
 };
 
 struct vg_cad_patch {
   double area; /* of its exact faces; NAN unless with_volume */
-  int32_t id;
+  int32_t id, is_interface;
+  char name[80]; /* zero-terminated */
+};
+
+struct vg_cad_place { /* a zone */
+  double seed[3];
   char name[80]; /* zero-terminated */
 };
 

@@ -337,9 +337,9 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
   vg_status st;
 
   if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);
-  st = kind
-       ? vg_cad_read(path, kind, info->cad, info->model, out, &info->unit, err)
-       : f->read(path, out, &info->turned, err);
+  st = kind ? vg_cad_read(path, kind, info->cad, info->model, out, &info->unit,
+                          info->zones, err)
+            : f->read(path, out, &info->turned, err);
   if (st < 0) return st;
   info->format = f->suffix;
   info->n_cell = out->n_tet + out->n_pyr + out->n_pri + out->n_hex;
@@ -394,6 +394,7 @@ static struct vg_read_info asked_of(const struct vg_read_info *info)
   if (!info) return asked;
   asked.cad = info->cad;
   asked.model = info->model;
+  asked.zones = info->zones;
   asked.mapbc = info->mapbc;
   return asked;
 }

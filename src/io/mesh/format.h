@@ -20,6 +20,8 @@ struct vg_read_info {
   const struct vg_cad_options *cad; /* in: options for CAD; NULL: defaults */
   struct vg_cad_model *model; /* in: empty; receives the model of a CAD file.
                                  NULL: the model is not kept */
+  struct vg_cad_zones *zones; /* in: empty; receives the zones of a CAD file,
+                                 see vg_cad_read; may be NULL */
   /* in: file with boundary conditions; NULL or "": STEM.mapbc, unless the mesh
    * is a surface and Vanguard wrote that file */
   const char *mapbc;

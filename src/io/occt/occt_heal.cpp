@@ -3,6 +3,8 @@
  * faces. */
 #include "io/occt/occt_parts.h"
 
+#include "io/cad/cad.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -700,6 +702,12 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
   double tolerance = 0;
   bool done = false;
 
+  if (ask.solids == VG_CAD_SOLIDS_ZONES) {
+    drop_loose(ask, model, talk);
+    separate(ask, model, talk);
+    if (ask.with_volume) measure_volume(model);
+    return;
+  }
   /* A solid that shares more than one wall in part is not closed without one of
    * its walls, so that the union needs all of them. */
   if (many && ask.leave_apart == VG_CAD_UNITE_WHOLE)

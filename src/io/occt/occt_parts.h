@@ -77,9 +77,18 @@ struct Face {
   std::string name, colour, layer, part;
 };
 
+/** A solid that is a zone, and a point in it. */
+struct Zone {
+  std::string name;
+  gp_Pnt seed;
+};
+
 struct Model {
   std::vector<Face> faces; /* sorted by number; pieces of one face are
                               adjacent */
+  std::vector<std::string> solid_names; /* [n_solid] "": the file has none */
+  std::vector<Zone> zones; /* solids, if they are zones: faces with a solid on
+                              both sides (behind) are then interfaces */
   int n_solid = 0; /* solids of the file; joined solids keep the number of
                       the first of them, and the others have no faces */
   std::vector<TopoDS_Edge> loose;  /* curves of no face, as read */
@@ -140,6 +149,12 @@ const double hollow_share = 0.5, box_near = 1e-3; /* S54 */
 bool unite(const vg_cad_ask &ask, bool is_last, Model &model,
            std::vector<std::string> &said, const Talk &talk);
 
+/** Make a zone of each solid: divide the faces of solids that touch by each
+ * other, so that those between two solids occur once. VG_ERR_INPUT: solids are
+ * open or overlap, or none of them touch. VG_ERR_GEOMETRY: the general fuse
+ * fails. */
+void separate(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
 /** Tolerances to be tried in this order: ask.tolerance, or fractions of the
  * diagonal. */
 std::vector<double> tolerances(const vg_cad_ask &ask, const Model &model);
@@ -158,6 +173,10 @@ std::vector<size_t> find_shells(const Model &model);
 
 /** Determine whether the model is solid, and its volume. */
 void measure_volume(Model &model);
+
+/** Copy a name of the file, shortened without splitting characters; control
+ * characters become '_'. */
+void set_name(char (&to)[80], const std::string &name);
 
 /** "face 3 (wing)", for messages. */
 std::string named(const Face &f);

@@ -270,7 +270,10 @@ public:
   void add(const TopoDS_Shape &s, Face from)
   {
     if (words_) inherit(s, from);
-    if (s.ShapeType() == TopAbs_SOLID) from.solid = model_.n_solid++;
+    if (s.ShapeType() == TopAbs_SOLID) {
+      from.solid = model_.n_solid++;
+      model_.solid_names.push_back(from.part);
+    }
     if (s.ShapeType() == TopAbs_FACE) {
       if (int known = seen_.FindIndex(s)) {
         Face &same = model_.faces[static_cast<size_t>(known) - 1];

@@ -109,7 +109,8 @@ void send(const Model &model, const Surface &s, const Talk &talk)
   const vg_cad_counts n = { s.point.size() / 3,   s.tri.size() / 3,
                             s.segment.size() / 2, s.patches.size(),
                             model.is_solid,       model.volume,
-                            model.unit,           model.n_solid };
+                            model.unit,           model.n_solid,
+                            model.zones.size() };
 
   talk.put(&t, sizeof t);
   talk.put(&n, sizeof n);
@@ -120,6 +121,12 @@ void send(const Model &model, const Surface &s, const Talk &talk)
   talk.put(s.segment.data(), s.segment.size() * sizeof s.segment[0]);
   talk.put(s.curve.data(), s.curve.size() * sizeof s.curve[0]);
   talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
+  for (const Zone &z : model.zones) {
+    vg_cad_place to = { { z.seed.X(), z.seed.Y(), z.seed.Z() }, "" };
+
+    set_name(to.name, z.name);
+    talk.put(&to, sizeof to);
+  }
 }
 
 /* State of the child between questions. */

@@ -246,37 +246,29 @@ std::string group_of(const vg_cad_ask &ask, const Face &f)
   }
 }
 
-/* Names are shortened without splitting characters. */
-void set_name(vg_cad_patch &p, const std::string &name)
-{
-  size_t n = std::min(name.size(), sizeof p.name - 1);
-
-  if (n < name.size())
-    while (n && (static_cast<unsigned char>(name[n]) & 0xc0) == 0x80) n--;
-  std::memset(p.name, 0, sizeof p.name);
-  std::memcpy(p.name, name.data(), n);
-  for (size_t k = 0; k < n; k++)
-    if (static_cast<unsigned char>(p.name[k]) < ' ' || p.name[k] == 127)
-      p.name[k] = '_';
-}
-
 /* Patches of faces; groups are numbered from 1 in the order of their first
  * faces. */
 class Patches
 {
 public:
-  Patches(const vg_cad_ask &ask, std::vector<vg_cad_patch> &list)
-      : ask_(ask), list_(list)
+  Patches(const vg_cad_ask &ask, const Model &model,
+          std::vector<vg_cad_patch> &list)
+      : ask_(ask), model_(model), list_(list)
   {
+    for (const Face &f : model.faces) last_ = std::max(last_, f.number);
   }
 
   uint32_t of(const Face &f)
   {
-    std::string name = group_of(ask_, f);
+    const bool is_interface = !model_.zones.empty() && f.behind >= 0;
+    std::string name = is_interface ? between(f) : group_of(ask_, f);
     uint32_t next = static_cast<uint32_t>(list_.size());
     vg_cad_patch p;
 
-    auto found = known_.emplace(ask_.patches ? name : std::to_string(f.number),
+    auto found = known_.emplace(is_interface
+                                  ? format("i %d %d", f.solid, f.behind)
+                                : ask_.patches ? "g " + name
+                                               : std::to_string(f.number),
                                 next);
 
     if (!found.second) {
@@ -285,8 +277,10 @@ public:
     }
     p.area = area(f);
     p.id = ask_.patches ? static_cast<int32_t>(next + 1)
+         : is_interface ? static_cast<int32_t>(++last_)
                         : static_cast<int32_t>(f.number);
-    set_name(p, name);
+    p.is_interface = is_interface;
+    set_name(p.name, name);
     list_.push_back(p);
     return next;
   }
@@ -301,9 +295,18 @@ private:
     return std::fabs(g.Mass());
   }
 
+  std::string between(const Face &f) const
+  {
+    return format("%.37s_to_%.37s",
+                  model_.zones[static_cast<size_t>(f.solid)].name.c_str(),
+                  model_.zones[static_cast<size_t>(f.behind)].name.c_str());
+  }
+
   const vg_cad_ask &ask_;
+  const Model &model_;
   std::vector<vg_cad_patch> &list_;
   std::map<std::string, uint32_t> known_;
+  uint32_t last_ = 0; /* largest number of a face, or of an interface */
 };
 
 /* Deflections are relative to the size of each edge, so that a distant boundary
@@ -411,11 +414,23 @@ void check_areas(const Model &model, const Surface &s, const Talk &talk)
 
 } // namespace
 
+void set_name(char (&to)[80], const std::string &name)
+{
+  size_t n = std::min(name.size(), sizeof to - 1);
+
+  if (n < name.size())
+    while (n && (static_cast<unsigned char>(name[n]) & 0xc0) == 0x80) n--;
+  std::memset(to, 0, sizeof to);
+  std::memcpy(to, name.data(), n);
+  for (size_t k = 0; k < n; k++)
+    if (static_cast<unsigned char>(to[k]) < ' ' || to[k] == 127) to[k] = '_';
+}
+
 void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                  const Talk &talk)
 {
   Builder builder(model, out);
-  Patches patches(ask, out.patches);
+  Patches patches(ask, model, out.patches);
   double least = ask.least > 0 ? ask.least
                                : std::max(least_of_all * model.diagonal,
                                           least_of_face * model.face_size);

@@ -15,11 +15,13 @@
 #include <BOPAlgo_Builder.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <Precision.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -202,21 +204,56 @@ public:
     return out;
   }
 
-  /* The outer faces that a face of the file became; each is returned for one
-   * face of the file only. */
-  std::vector<TopoDS_Face> take(const TopoDS_Face &face)
+  /* Two solids of the group that have a common cell. */
+  bool overlap(size_t &a, size_t &b) const
+  {
+    for (size_t i = 0; i < group_.size(); i++)
+      for (size_t j = 0; j < i; j++)
+        for (int k = 1; k <= cells_[i].Extent(); k++)
+          if (cells_[j].Contains(cells_[i](k))) {
+            a = group_[j];
+            b = group_[i];
+            return true;
+          }
+    return false;
+  }
+
+  /* The solids of the group on the sides of each face, in ascending order. */
+  std::vector<Group> owners() const
+  {
+    std::vector<Group> out(static_cast<size_t>(faces_.Extent()));
+
+    for (size_t i = 0; i < group_.size(); i++) {
+      TopTools_IndexedMapOfShape mine;
+
+      for (int k = 1; k <= cells_[i].Extent(); k++)
+        TopExp::MapShapes(cells_[i](k), TopAbs_FACE, mine);
+      for (int k = 1; k <= mine.Extent(); k++)
+        out[index(mine(k))].push_back(group_[i]);
+    }
+    return out;
+  }
+
+  size_t index(const TopoDS_Shape &face) const
+  {
+    return static_cast<size_t>(faces_.FindIndex(face)) - 1;
+  }
+
+  /* The faces that a face of the file became, with at most this many cells;
+   * each is returned for one face of the file only. */
+  std::vector<TopoDS_Face> take(const TopoDS_Face &face, size_t most = 1)
   {
     const TopTools_ListOfShape &list = fuse_.Modified(face);
     std::vector<TopoDS_Face> out;
 
-    if (list.IsEmpty()) add(face, out);
-    for (const TopoDS_Shape &s : list) add(s, out);
+    if (list.IsEmpty()) add(face, most, out);
+    for (const TopoDS_Shape &s : list) add(s, most, out);
     return out;
   }
 
-  /* Are all cells valid, and are the outer faces closed and all of them
-   * taken? */
-  bool is_whole() const
+  /* Are all cells valid, are the outer faces closed, and were all faces with at
+   * most this many cells taken? */
+  bool is_whole(size_t most = 1) const
   {
     std::vector<TopoDS_Shape> outer;
 
@@ -224,9 +261,10 @@ public:
       for (int i = 1; i <= cells.Extent(); i++)
         if (!BRepCheck_Analyzer(cells(i)).IsValid()) return false;
     for (int i = 1; i <= faces_.Extent(); i++) {
-      if (count_[static_cast<size_t>(i) - 1] != 1) continue;
-      if (!taken_[static_cast<size_t>(i) - 1]) return false;
-      outer.push_back(faces_(i));
+      const size_t at = static_cast<size_t>(i) - 1;
+
+      if (count_[at] <= most && !taken_[at]) return false;
+      if (count_[at] == 1) outer.push_back(faces_(i));
     }
     return is_closed(outer);
   }
@@ -321,11 +359,11 @@ private:
     taken_.assign(count_.size(), false);
   }
 
-  void add(const TopoDS_Shape &s, std::vector<TopoDS_Face> &out)
+  void add(const TopoDS_Shape &s, size_t most, std::vector<TopoDS_Face> &out)
   {
     size_t at = static_cast<size_t>(faces_.FindIndex(s));
 
-    if (!at || count_[at - 1] != 1 || taken_[at - 1]) return;
+    if (!at || count_[at - 1] > most || taken_[at - 1]) return;
     taken_[at - 1] = true;
     out.push_back(TopoDS::Face(faces_(static_cast<int>(at))));
   }
@@ -469,7 +507,144 @@ bool are_complete(const Model &model, const Solids &solids)
                       });
 }
 
+/* --- zones --------------------------------------------------------------- */
+
+/* Replace the faces of the group by the pieces into which they divide each
+ * other. Returns the reason of a failure; empty on success. */
+std::string separate_group(const Solids &solids, const Group &group,
+                           double tolerance, Model &model)
+{
+  Cells cells(solids, group, tolerance);
+  std::vector<Face> out;
+  size_t a, b;
+
+  if (cells.failed()) return "the general fuse failed";
+  if (cells.overlap(a, b))
+    throw Failure{ VG_ERR_INPUT,
+                   format("the solids %s and %s overlap, so that a place would "
+                          "be in two zones; subtract one from the other",
+                          where(model, a).c_str(), where(model, b).c_str()) };
+  const std::vector<Group> owners = cells.owners();
+  for (const Face &f : model.faces) {
+    if (f.shape.IsNull() || !has(group, f.solid)) {
+      out.push_back(f);
+      continue;
+    }
+    for (const TopoDS_Face &piece : cells.take(f.shape, 2)) {
+      const Group &of = owners[cells.index(piece)];
+      Face next = f;
+
+      next.shape = piece;
+      next.solid = static_cast<int>(of[0]);
+      next.behind = of.size() > 1 ? static_cast<int>(of[1]) : -1;
+      out.push_back(next);
+    }
+  }
+  if (!cells.is_whole(2)) return "its result is not valid";
+  model.faces = out;
+  return "";
+}
+
+/* The names of the solids; none occurs twice. */
+std::vector<std::string> zone_names(const Model &model)
+{
+  std::vector<std::string> out;
+
+  for (size_t i = 0; i < static_cast<size_t>(model.n_solid); i++) {
+    const std::string own = model.solid_names[i].substr(0, 70);
+    std::string name = own.empty() ? format("solid_%zu", i + 1) : own;
+
+    for (size_t k = 2; std::find(out.begin(), out.end(), name) != out.end();
+         k++)
+      name = format("%s_%zu", own.empty() ? "solid" : own.c_str(), k);
+    out.push_back(name);
+  }
+  return out;
+}
+
+/* Number of points of the surface of a solid that are tried in pairs. */
+const size_t most_points = 40;
+
+/* The point inside a solid that is farthest from points of its faces, among the
+ * midpoints between these points. */
+gp_Pnt point_in(const TopoDS_Shape &solid, const std::string &name)
+{
+  BRepClass3d_SolidClassifier side(solid);
+  std::vector<gp_Pnt> on;
+  gp_Pnt best;
+  double most = 0;
+
+  for (int n = 1; n < 6 && on.size() < most_points; n++)
+    for (TopExp_Explorer e(solid, TopAbs_FACE);
+         e.More() && on.size() < most_points; e.Next())
+      for (const gp_Pnt &p : samples(TopoDS::Face(e.Current()), n))
+        on.push_back(p);
+  for (size_t i = 0; i < on.size(); i++)
+    for (size_t j = 0; j < i; j++) {
+      const gp_Pnt p((on[i].XYZ() + on[j].XYZ()) / 2);
+      double near = p.SquareDistance(on[0]);
+
+      for (const gp_Pnt &q : on) near = std::min(near, p.SquareDistance(q));
+      if (near <= most) continue;
+      side.Perform(p, Precision::Confusion());
+      if (side.State() != TopAbs_IN) continue;
+      most = near;
+      best = p;
+    }
+  if (!(most > 0))
+    throw Failure{ VG_ERR_GEOMETRY,
+                   format("no point inside the solid %s was found",
+                          name.c_str()) };
+  return best;
+}
+
 } // namespace
+
+void separate(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  const Solids solids = Shells(model).solids();
+  const std::vector<double> list = tolerances(ask, model);
+  const std::vector<std::string> names = zone_names(model);
+  size_t n = 0;
+
+  talk.stage("dividing the faces of its solids");
+  if (model.n_solid < 2)
+    throw Failure{ VG_ERR_INPUT,
+                   format("solids in it: %d; zones need two that touch; "
+                          "export its parts as solids, or remove cad_solids "
+                          "zones",
+                          model.n_solid) };
+  for (size_t i = 0; i < solids.size(); i++)
+    if (solids[i].IsNull())
+      throw Failure{ VG_ERR_INPUT,
+                     format("the solid %s is not closed and cannot be a zone; "
+                            "export closed solids",
+                            where(model, i).c_str()) };
+  for (const Group &group : touching(solids, list[0])) {
+    std::string why = "they have too many faces";
+
+    if (count_faces_of(model, group) <= most_faces)
+      for (size_t i = 0; i < list.size() && !why.empty(); i++)
+        why = separate_group(solids, group, list[i], model);
+    if (!why.empty())
+      throw Failure{ VG_ERR_GEOMETRY,
+                     format("%zu solids touch, but cannot be zones (%s); the "
+                            "first solid is %s; try another cad_tolerance",
+                            group.size(), why.c_str(),
+                            where(model, group[0]).c_str()) };
+  }
+  for (const Face &f : model.faces) n += !f.shape.IsNull() && f.behind >= 0;
+  if (!n)
+    throw Failure{ VG_ERR_INPUT,
+                   format("none of its %d solids touch within %.3g, so that no "
+                          "zones have a common wall; raise cad_tolerance, or "
+                          "remove cad_solids zones",
+                          model.n_solid, list[0]) };
+  for (size_t i = 0; i < solids.size(); i++)
+    model.zones.push_back({ names[i], point_in(solids[i], names[i]) });
+  talk.note(format("%zu solids are zones; faces between two of them: %zu",
+                   model.zones.size(), n));
+}
 
 bool unite(const vg_cad_ask &ask, bool is_last, Model &model,
            std::vector<std::string> &said, const Talk &talk)

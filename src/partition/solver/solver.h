@@ -26,6 +26,9 @@ struct vg_solver_options {
   uint64_t cluster_above; /* Cells outside layers are clustered if there are
                              more than this. */
   int threads;            /* Threads that process slices; 0: one per core. */
+  /* [zones of the mesh] > 0: factor on the work of their cells; NULL: 1. Only
+   * for meshes in one piece. */
+  const double *zone_weight;
 };
 #define VG_SOLVER_OPTIONS_INIT                                                 \
   {                                                                            \

@@ -39,6 +39,7 @@ struct vg_unit_options {
   const unsigned char *is_wall; /* See vg_solver_layers. */
   size_t cluster;       /* Cells outside layers per cluster; 1: no clusters. */
   const double *weight; /* [VG_SOLVER_KINDS] */
+  const double *cell_weight; /* [n_cell] Instead of weight; may be NULL. */
 };
 
 /** Makes the units, in the order of their first cells. */

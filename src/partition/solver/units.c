@@ -331,7 +331,9 @@ static vg_status weigh(struct work *w, struct vg_error *err)
     return vg_fail_memory(err, "the weights of stacks and cells");
   }
   for (uint32_t cell = 0; cell < w->l->n_cell; cell++) {
-    u->weight[u->of[cell]] += w->o->weight[kind_of(w->l, cell)];
+    u->weight[u->of[cell]] += w->o->cell_weight
+                              ? w->o->cell_weight[cell]
+                              : w->o->weight[kind_of(w->l, cell)];
     if (w->stands[cell]) n[u->of[cell]]++;
   }
   for (size_t k = 0; k < u->n_unit; k++) {

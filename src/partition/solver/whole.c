@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 #include "partition/solver/solver_parts.h"
 
 /* With clusters, the boundaries of partitions follow the ragged boundaries of
@@ -15,18 +16,44 @@
 struct smoothing {
   const struct vg_cell_links *l;
   const struct vg_units *u;
-  const double *weight; /* Weight of each kind. */
-  double *load;         /* [n_part] */
-  double most;          /* Upper limit of the load of a partition. */
-  uint32_t *part;       /* [n_cell] */
+  const struct vg_unit_options *o;
+  double *load;   /* [n_part] */
+  double most;    /* Upper limit of the load of a partition. */
+  uint32_t *part; /* [n_cell] */
 };
 
-static int kind_of(const struct vg_cell_links *l, uint32_t cell)
+static double weight_of(const struct vg_cell_links *l,
+                        const struct vg_unit_options *o, uint32_t cell)
 {
-  return cell < l->end_tet ? 0
-       : cell < l->end_pyr ? 1
-       : cell < l->end_pri ? 2
-                           : 3;
+  return o->cell_weight    ? o->cell_weight[cell]
+       : cell < l->end_tet ? o->weight[0]
+       : cell < l->end_pyr ? o->weight[1]
+       : cell < l->end_pri ? o->weight[2]
+                           : o->weight[3];
+}
+
+/* Weights of the cells by kinds and zones; NULL if zones have no weights. */
+static vg_status weigh_zones(const struct vg_mesh *m,
+                             const struct vg_solver_options *o, double **weight,
+                             struct vg_error *err)
+{
+  const size_t n[VG_SOLVER_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+  double *to;
+
+  *weight = NULL;
+  if (!o->zone_weight || !m->n_zone) return VG_OK;
+  to = *weight = vg_alloc(n[0] + n[1] + n[2] + n[3], sizeof *to);
+  if (!to) return vg_fail_memory(err, "the weights of the cells");
+  for (int k = 0; k < VG_SOLVER_KINDS; k++) {
+    size_t z = 0;
+    uint64_t end = 0;
+
+    for (size_t c = 0; c < n[k]; c++) {
+      vg_mesh_zone_walk(m, k, c, &z, &end);
+      *to++ = o->weight[k] * o->zone_weight[z];
+    }
+  }
+  return VG_OK;
 }
 
 /* The partition that contains most of a cell's neighbours: its own unless
@@ -72,7 +99,7 @@ static void smooth(struct smoothing *s)
       if (!s->u->alone[s->u->of[cell]]) continue;
       to = better(s, cell);
       if (to == own) continue;
-      weight = s->weight[kind_of(s->l, cell)];
+      weight = weight_of(s->l, s->o, cell);
       if (s->load[to] + weight > s->most || !(s->load[own] > weight)) continue;
       s->load[to] += weight;
       s->load[own] -= weight;
@@ -82,16 +109,16 @@ static void smooth(struct smoothing *s)
 
 static vg_status straighten(const struct vg_cell_links *l,
                             const struct vg_units *u,
-                            const struct vg_solver_options *o, uint32_t *part,
-                            struct vg_error *err)
+                            const struct vg_unit_options *o, uint64_t n_part,
+                            uint32_t *part, struct vg_error *err)
 {
-  struct smoothing s = { l, u, o->weight, NULL, 0, part };
+  struct smoothing s = { l, u, o, NULL, 0, part };
 
-  s.load = vg_calloc(o->n_part, sizeof *s.load);
+  s.load = vg_calloc(n_part, sizeof *s.load);
   if (!s.load) return vg_fail_memory(err, "the loads of partitions");
   for (uint32_t cell = 0; cell < l->n_cell; cell++)
-    s.load[part[cell]] += o->weight[kind_of(l, cell)];
-  for (uint64_t p = 0; p < o->n_part; p++)
+    s.load[part[cell]] += weight_of(l, o, cell);
+  for (uint64_t p = 0; p < n_part; p++)
     if (s.load[p] > s.most) s.most = s.load[p];
   smooth(&s);
   free(s.load);
@@ -99,14 +126,15 @@ static vg_status straighten(const struct vg_cell_links *l,
 }
 
 static vg_status tally(const struct vg_cell_links *l,
-                       const struct vg_solver_options *o, const uint32_t *part,
-                       struct vg_solver_report *r, struct vg_error *err)
+                       const struct vg_unit_options *o, uint64_t n_part,
+                       const uint32_t *part, struct vg_solver_report *r,
+                       struct vg_error *err)
 {
-  struct vg_tally *t = vg_tally_new(o->n_part);
+  struct vg_tally *t = vg_tally_new(n_part);
   int bad = !t;
 
   for (uint32_t cell = 0; cell < l->n_cell && !bad; cell++) {
-    vg_tally_cells(t, part[cell], 1, o->weight[kind_of(l, cell)]);
+    vg_tally_cells(t, part[cell], 1, weight_of(l, o, cell));
     for (int i = 0; i < vg_half_faces(l, cell) && !bad; i++) {
       uint32_t mate = vg_mate(l, cell << 3 | (uint32_t)i) >> 3;
 
@@ -171,19 +199,23 @@ vg_status vg_solver_part(const struct vg_mesh *m,
   struct vg_unit_options uo = unit_options(m, layers, o);
   struct vg_cell_links l = VG_CELL_LINKS_INIT;
   struct vg_units u = VG_UNITS_INIT;
+  double *weight = NULL;
   vg_status st;
 
+  VG_TRY(weigh_zones(m, o, &weight, err));
+  uo.cell_weight = weight;
   VG_TRY(vg_cell_links_build(&l, m, 0, name, err));
   VG_TRY(vg_units_make(&l, &uo, &u, err));
   VG_TRY(part_units(&l, &u, o, part, &r, err));
-  if (uo.cluster > 1) VG_TRY(straighten(&l, &u, o, part, err));
-  VG_TRY(tally(&l, o, part, &r, err));
+  if (uo.cluster > 1) VG_TRY(straighten(&l, &u, &uo, o->n_part, part, err));
+  VG_TRY(tally(&l, &uo, o->n_part, part, &r, err));
   r.n_stack = u.n_stack;
   r.n_stack_cell = u.n_stack_cell;
   r.most_stack = u.most_stack;
   r.has_loose = u.has_loose;
   *report = r;
 done:
+  free(weight);
   vg_units_release(&u);
   vg_cell_links_release(&l);
   return st;

@@ -12,6 +12,7 @@
 #include "io/stream/convention.h"
 #include "run/input/input.h"
 #include "run/input/shape_parts.h"
+#include "run/input/zone_table.h"
 #include "run/settings/plan_options.h"
 
 #define FARFIELD_TRIANGLES 1e8
@@ -34,6 +35,10 @@ struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
   struct vg_flow_options o = vg_options_flow(&b->read->settings,
                                              b->read->has_cells);
 
+  if (o.kind == VG_FLOW_UNKNOWN && vg_mesh_has_interfaces(&b->surface)) {
+    o.kind = VG_FLOW_INTERNAL;
+    o.asked_by = "cad_solids zones";
+  }
   o.side = b->read->side;
   o.require_bc = b->require_bc;
   o.threads = b->threads;

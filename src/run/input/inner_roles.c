@@ -7,50 +7,77 @@
 
 #include "base/memory.h"
 #include "core/mesh/copies.h"
+#include "io/cad/cad.h"
+#include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
 #include "run/input/wakes.h"
+#include "run/input/zone_table.h"
 #include "run/settings/patch_names.h"
+
+static int has_role(const struct vg_settings *s)
+{
+  int has = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    has |= s->patch[i].role > VG_PATCH_WALL;
+  return has;
+}
+
+static int has_wake_sheet(const struct vg_settings *s)
+{
+  int has = 0;
+
+  for (size_t i = 0; i < s->n_wake; i++)
+    has |= s->wake_row[i].kind == VG_WAKE_SHEET;
+  return has;
+}
 
 static int wants_inner(const struct vg_settings *s)
 {
-  int wants = *s->baffles || *s->sheets || *s->zone_interfaces;
-
-  for (size_t i = 0; i < s->n_patch; i++)
-    wants |= s->patch[i].role > VG_PATCH_WALL;
-  for (size_t i = 0; i < s->n_wake; i++)
-    wants |= s->wake_row[i].kind == VG_WAKE_SHEET;
-  return wants;
+  return *s->baffles || *s->sheets || *s->zone_interfaces || has_role(s) ||
+         has_wake_sheet(s);
 }
 
 int vg_boundary_wants_inner(const struct vg_boundary *b)
 {
-  return wants_inner(&b->read->settings);
+  return wants_inner(&b->read->settings) || vg_mesh_has_interfaces(&b->surface);
+}
+
+int vg_read_has_solid_zones(const struct vg_read *r)
+{
+  return r->settings.cad.solids == VG_CAD_SOLIDS_ZONES && !*r->files.front &&
+         vg_format_is_cad(r->files.surface);
 }
 
 const char *vg_read_keeps_triangles(const struct vg_read *r)
 {
   if (r->settings.n_periodic) return "periodic patches";
-  return wants_inner(&r->settings) ? "inner surfaces" : NULL;
+  return wants_inner(&r->settings) || vg_read_has_solid_zones(r)
+         ? "inner surfaces"
+         : NULL;
 }
 
 const char *vg_inner_source(const struct vg_settings *s, char *text,
                             size_t size)
 {
-  const char *const name[] = { "baffles ", "sheets ", "zone_interfaces ",
-                               "the table patches", "the table wakes" };
-  const char *const list[] = { s->baffles, s->sheets, s->zone_interfaces, "",
-                               "" };
-  int has_role = 0, has_wake = 0;
+  const struct {
+    const char *name, *list;
+    int is;
+  } from[] = {
+    { "baffles ", s->baffles, *s->baffles != 0 },
+    { "sheets ", s->sheets, *s->sheets != 0 },
+    { "zone_interfaces ", s->zone_interfaces, *s->zone_interfaces != 0 },
+    { "the table patches", "", has_role(s) },
+    { "the table wakes", "", has_wake_sheet(s) },
+    { "cad_solids zones", "", s->cad.solids == VG_CAD_SOLIDS_ZONES },
+  };
   size_t n = 0;
 
-  for (size_t i = 0; i < s->n_patch; i++)
-    has_role |= s->patch[i].role > VG_PATCH_WALL;
-  for (size_t i = 0; i < s->n_wake; i++)
-    has_wake |= s->wake_row[i].kind == VG_WAKE_SHEET;
-  for (size_t i = 0; i < 5 && n < size; i++)
-    if (*list[i] || (i == 3 && has_role) || (i == 4 && has_wake))
+  *text = 0;
+  for (size_t i = 0; i < sizeof from / sizeof *from && n < size; i++)
+    if (from[i].is)
       n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
-                            name[i], list[i]);
+                            from[i].name, from[i].list);
   return text;
 }
 
@@ -106,6 +133,8 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     give_list(m, "sheets", s->sheets, VG_PATCH_SHEET, on, role, from, err));
   VG_TRY(give_list(m, "zone_interfaces", s->zone_interfaces, VG_PATCH_INTERFACE,
                    on, role, from, err));
+  for (size_t i = 0; i < m->n_patch; i++) on[i] = m->patch[i].is_interface != 0;
+  VG_TRY(give(m, on, VG_PATCH_INTERFACE, "cad_solids", role, from, err));
   for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
     const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
 

@@ -365,11 +365,6 @@ static vg_status name_mapbc(struct vg_read *r, struct vg_error *err)
   return VG_OK;
 }
 
-void vg_read_note_cad(void *user, const char *text)
-{
-  vg_note(user, "CAD: %s", text);
-}
-
 /* Boundary conditions come from the .mapbc that the settings name, or that has
  * the stem of the file. */
 static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
@@ -377,9 +372,13 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
 {
   const int is_remeshed = vg_read_is_remeshed(r, &r->surface);
   struct vg_cad_options cad = vg_options_cad(&r->settings, is_remeshed);
-  struct vg_read_info info = { .cad = &cad,
-                               .model = is_remeshed ? &r->model : NULL,
-                               .mapbc = r->settings.mapbc };
+  struct vg_cad_zones zones = { 0, NULL };
+  struct vg_read_info info = {
+    .cad = &cad,
+    .zones = &zones,
+    .model = is_remeshed && !vg_read_has_solid_zones(r) ? &r->model : NULL,
+    .mapbc = r->settings.mapbc
+  };
   const char *path = r->files.surface;
   vg_status st = name_mapbc(r, err);
 
@@ -389,6 +388,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   cad.user = r->notes;
   if (st < 0) return st;
   st = vg_surface_read(path, &r->surface, &info, err);
+  st = vg_zone_rows_take(&r->settings, &zones, st, err);
   /* The message of the library has less detail. */
   if (st == VG_ERR_STOPPED) return vg_display_stopped(show, err);
   if (st < 0) return st;
@@ -578,7 +578,8 @@ static vg_status read_for_all(struct vg_read *r, struct vg_comm *comm,
     st = name_mapbc(r, err);
     if (st >= 0) st = leave_output(r, err);
   }
-  st = vg_surface_bcast(comm, 1, st, &r->surface, err);
+  VG_TRY(vg_surface_bcast(comm, 1, st, &r->surface, err));
+  st = vg_zone_rows_bcast(comm, &r->settings, err);
 done:
   return st;
 }

@@ -70,7 +70,7 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
   if (is_tessellation(r))
     return !vg_read_keeps_triangles(r) && sliver_share(surface) > MOST;
   return !*r->files.front && vg_format_is_cad(r->files.surface) &&
-         !(r->settings.wrap > 0);
+         !vg_read_has_solid_zones(r) && !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)

@@ -141,6 +141,11 @@ done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
+void vg_read_note_cad(void *user, const char *text)
+{
+  vg_note(user, "CAD: %s", text);
+}
+
 vg_status vg_read_section(struct vg_read *r, struct vg_display *show,
                           struct vg_error *err)
 {

@@ -58,6 +58,9 @@ int vg_boundary_wants_inner(const struct vg_boundary *b);
  * NULL: they do. Static string. */
 const char *vg_read_keeps_triangles(const struct vg_read *read);
 
+/** Is it a CAD file whose solids are zones? */
+int vg_read_has_solid_zones(const struct vg_read *read);
+
 #define VG_INNER_SOURCE 200
 
 /** Where the inner surfaces are requested, for messages: "baffles fin*, sheets

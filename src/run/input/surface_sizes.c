@@ -378,7 +378,7 @@ static void measure_end(const struct vg_mesh *m, const uint8_t *mark,
 
   if (!(share > 0)) return;
   measure_triangles(m, mark, s, end, share, 0, to);
-  if (to->n == n) measure(m, mark, s, end, share, 1, to);
+  if (to->n == n) measure_triangles(m, mark, s, end, share, 1, to);
 }
 
 static void measure_span(const struct vg_boundary *b, const uint8_t *mark,

@@ -41,6 +41,58 @@ int vg_zones_lack_cells(const struct vg_settings *s)
   return 0;
 }
 
+static int has_seed(const struct vg_zone_row *r)
+{
+  return !isnan(r->seed[0]) && !isnan(r->seed[1]) && !isnan(r->seed[2]);
+}
+
+vg_status vg_zone_rows_take(struct vg_settings *s, struct vg_cad_zones *z,
+                            vg_status st, struct vg_error *err)
+{
+  for (size_t k = 0; k < z->n && st >= 0; k++) {
+    struct vg_zone_row row;
+    size_t i = 0;
+
+    while (i < s->n_zone && strcmp(s->zone[i].name, z->of[k].name) != 0) i++;
+    if (i < s->n_zone) {
+      if (!has_seed(&s->zone[i]))
+        memcpy(s->zone[i].seed, z->of[k].seed, sizeof row.seed);
+      continue;
+    }
+    vg_settings_row_default(VG_TABLE_ZONES, &row);
+    memcpy(row.name, z->of[k].name, sizeof row.name);
+    memcpy(row.seed, z->of[k].seed, sizeof row.seed);
+    st = vg_settings_add(s, VG_TABLE_ZONES, &row, err);
+  }
+  free(z->of);
+  return st;
+}
+
+vg_status vg_zone_rows_bcast(struct vg_comm *c, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  struct vg_bytes b = { 0, NULL };
+  vg_status st = VG_OK;
+
+  if (!vg_comm_rank(c) && s->n_zone) {
+    b.n = s->n_zone * sizeof *s->zone;
+    b.data = vg_alloc(b.n, 1);
+    if (!b.data) st = vg_fail_memory(err, "the zones");
+    else memcpy(b.data, s->zone, b.n);
+  }
+  VG_TRY(vg_comm_agree(c, st, err));
+  VG_TRY(vg_comm_bcast(c, 0, &b, err));
+  if (vg_comm_rank(c)) s->n_zone = 0;
+  for (size_t i = 0; vg_comm_rank(c) && i < b.n / sizeof *s->zone; i++)
+    if (st >= 0)
+      st = vg_settings_add(s, VG_TABLE_ZONES,
+                           (const struct vg_zone_row *)b.data + i, err);
+  st = vg_comm_agree(c, st, err);
+done:
+  free(b.data);
+  return st;
+}
+
 static vg_status refuse_seed(const struct vg_zone_row *r, uint32_t zone,
                              struct vg_error *err)
 {
@@ -59,7 +111,7 @@ static vg_status take_row(const struct vg_settings *s, size_t i,
                           struct vg_error *err)
 {
   const struct vg_zone_row *r = &s->zone[i], *q;
-  const uint32_t zone = vg_zone_map_at(z, r->seed);
+  uint32_t zone;
 
   if (!*r->name)
     return vg_fail(err, VG_ERR_INPUT,
@@ -71,16 +123,25 @@ static vg_status take_row(const struct vg_settings *s, size_t i,
                      "zones: two rows have the name %s; give each zone a name "
                      "of its own",
                      r->name);
+  if (!has_seed(r))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "zones: the zone %s has no point; give x, y and z, or the "
+                   "name of a solid of the CAD file with cad_solids zones",
+                   r->name);
+  zone = vg_zone_map_at(z, r->seed);
   if (zone >= VG_ZONE_ON) return refuse_seed(r, zone, err);
   if (of[zone] != SIZE_MAX) {
     q = &s->zone[of[zone]];
     return vg_fail(err, VG_ERR_INPUT,
                    "zones: the seed points of %s (%g, %g, %g) and %s (%g, %g, "
                    "%g) are in one zone, since no interface separates them; "
-                   "remove one of the rows, or name the patches between the "
+                   "remove one of the rows%s, or name the patches between the "
                    "points in zone_interfaces",
                    q->name, q->seed[0], q->seed[1], q->seed[2], r->name,
-                   r->seed[0], r->seed[1], r->seed[2]);
+                   r->seed[0], r->seed[1], r->seed[2],
+                   s->cad.solids == VG_CAD_SOLIDS_ZONES
+                     ? " or give it the name of its solid"
+                     : "");
   }
   of[zone] = i;
   return VG_OK;

@@ -4,17 +4,31 @@
 #ifndef VG_RUN_INPUT_ZONE_TABLE_H
 #define VG_RUN_INPUT_ZONE_TABLE_H
 
+#include "base/comm.h"
 #include "core/sides/zone_map.h"
+#include "io/cad/cad.h"
 #include "run/input/input.h"
+
+/** Add a row for each solid of a CAD file that is a zone. A row of its name
+ * keeps its values, and gets the point if it has none.
+ * @param z   released
+ * @param st  status so far: after a failure nothing is added
+ * Returns st; VG_ERR_MEMORY. */
+vg_status vg_zone_rows_take(struct vg_settings *s, struct vg_cad_zones *z,
+                            vg_status st, struct vg_error *err);
+
+/** All ranks take the rows of rank 0. Collective. */
+vg_status vg_zone_rows_bcast(struct vg_comm *c, struct vg_settings *s,
+                             struct vg_error *err);
 
 /** Find the zones of a surface, with names and kinds from the table `zones`.
  *
  * @param is_cut  1: without the rows of zones that have no cells, which are not
  *                part of the surface
  * @param hmax  out: [z->n] largest edges, 0: none; to be freed. NULL: not asked
- * VG_ERR_INPUT for a seed point outside the fluid or on a triangle, two seed
- * points in one zone, and two zones of one name; otherwise as vg_zone_map_new.
- * *z is empty on failure. */
+ * VG_ERR_INPUT for a row without a point, a seed point outside the fluid or on
+ * a triangle, two seed points in one zone, and two zones of one name; otherwise
+ * as vg_zone_map_new. *z is empty on failure. */
 vg_status vg_zones_make(const struct vg_settings *s,
                         const struct vg_mesh *surface, int is_cut,
                         struct vg_zone_map *z, double **hmax,

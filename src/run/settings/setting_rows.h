@@ -111,7 +111,9 @@ VG_ROW(WORD, cad, patches, "cad_patches", cad.patches,
 VG_ROW(WORD, cad, solids, "cad_solids", cad.solids,
   .words = solid_words, .unit = "", .help = "Faces of a CAD file with solids "
   "that are read: only those of solids, all, or auto: all but plane faces that "
-  "belong to no solid and touch no other face, such as datum planes")
+  "belong to no solid and touch no other face, such as datum planes. zones: "
+  "each solid is a zone of cells, and the faces between two of them are "
+  "interfaces")
 VG_ROW(REAL, cad, tolerance, "cad_tolerance", cad.tolerance,
   LENGTH, .help = "Largest distance between edges of CAD faces that are sewn "
   "together; 0: 1e-6 of the diagonal of the model")

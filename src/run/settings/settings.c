@@ -47,7 +47,8 @@ static const char *const order_words[] = { "file", "medit", "upper", "vtk",
 static const char *const cad_patch_words[] = { "face",  "name", "colour",
                                                "layer", "part", NULL };
 /* In the order of enum vg_cad_solids. */
-static const char *const solid_words[] = { "auto", "only", "all", NULL };
+static const char *const solid_words[] = { "auto", "only", "all", "zones",
+                                           NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", "hex", NULL };
 /* In the order of enum vg_decomposition_method, enum vg_partitioner. */
@@ -196,8 +197,9 @@ static const struct vg_param patch_columns[] = {
 #define SEED(name, k)                                                          \
   {                                                                            \
     name, AT(seed[k]), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE,                \
-                       .hi = HUGE_SIZE, .unit = "length", .required = 1,       \
-                       .help = "A point in the zone, " name                    \
+                       .hi = HUGE_SIZE, .unit = "length", .optional = 1,       \
+                       .help = "A point in the zone, " name "; -: by the "     \
+                               "name of a solid, with cad_solids zones"        \
   }
 
 static const struct vg_param zone_columns[] = {
@@ -468,7 +470,8 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
     ""
   };
   struct vg_surface_row surface = { .adjacent = VG_BC_NONE };
-  struct vg_zone_row zone = { .kind = VG_ZONE_FLUID };
+  struct vg_zone_row zone = { .seed = { NAN, NAN, NAN },
+                              .kind = VG_ZONE_FLUID };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
   struct vg_adapt_row adapt = { "", "", "", 0, NAN, NAN, NAN, NAN, NAN, NAN };

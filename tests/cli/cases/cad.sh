@@ -99,6 +99,44 @@ vanguard mesh -q -p "$cad/box.step" --remesh-surface no --out plain
 exits 0
 lacks out "remeshed:"
 
+# Solids as zones: the same bytes on any number of ranks, and rows of the table
+# zones by the names of solids.
+cp "$cad/peg.brep" peg.brep
+cat >peg.deck <<'END'
+Solids as zones
+
+zones
+name     kind   mesh
+solid_2  solid  yes
+END
+vanguard mesh -q -p peg.brep --cad-solids zones --hmax 1 --write b8.ugrid --out z1
+exits 0
+says out "given by the setting cad_solids zones"
+says out "solid_1_to_solid_2 is an interface"
+grep -q "1 fluid .* 7.21.* solid_1$" out || fail "no zone solid_1"
+grep -q "2 solid .* 1.56.* solid_2$" out || fail "no zone solid_2"
+vanguard check z1/peg.b8.ugrid
+exits 0
+says out "validity: valid"
+if mpirun -n 2 true >/dev/null 2>&1; then
+  ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 mpirun -n 3 "$program" mesh -q \
+    -p peg.brep --cad-solids zones --hmax 1 --write b8.ugrid --out z3 \
+    --test-node-ranks 2 >out 2>err || fail "three ranks: $(cat err)"
+  same z1/peg.b8.ugrid z3/peg.b8.ugrid
+  same z1/peg.sheets z3/peg.sheets
+fi
+sed 's/solid_2/heater/' peg.deck >none.deck
+vanguard mesh -q -p peg.brep -d none.deck --cad-solids zones --hmax 1 --out none
+exits 1
+says err "the zone heater has no point"
+absent none
+vanguard mesh -q -p "$cad/inside.brep" --cad-solids zones --hmax 1 --out none
+exits 1
+says err "overlap, so that a place would be in two zones"
+vanguard mesh -q -p "$cad/box.brep" --cad-solids zones --hmax 1 --out none
+exits 1
+says err "zones need two that touch"
+
 # options without effect are reported, impossible requests are refused
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o

@@ -324,6 +324,48 @@ says out "2 solid"
 says out " 0.03584 "
 says out "  fins"
 
+vanguard demo exchanger --cells 1000 --out demo
+exits 0
+says out "the geometry needs more"
+vanguard mesh -p demo/exchanger --quiet --cells mixed --write b8.ugrid,foam
+exits 0
+vanguard check demo/exchanger.b8.ugrid
+exits 0
+says out "validity: valid"
+for zone in "1 fluid .* cold" "2 solid .* pipe" "3 fluid .* hot"; do
+  grep -q "$zone" out || fail "exchanger: $zone"
+done
+# partition: the cells of a zone with a small weight count less
+vanguard partition -q --json demo/exchanger.b8.ugrid -n 4 --zone-weights pipe=0.01
+exits 0
+cp out light.json
+vanguard partition -q --json demo/exchanger.b8.ugrid -n 4
+exits 0
+if command -v jq >/dev/null; then
+  jq -e -n --slurpfile a light.json --slurpfile b out \
+    '$a[0].solver_parts.balance < 1.02 and $b[0].solver_parts.balance < 1.02 and
+     $a[0].solver_parts.most_cells != $b[0].solver_parts.most_cells' >same ||
+    fail "zone-weights: $(cat light.json)"
+fi
+vanguard partition -q demo/exchanger.b8.ugrid -n 4 --zone-weights wall=0.01
+exits 1
+says err "has no zone wall"
+vanguard partition -q demo/exchanger.b8.ugrid -n 4 --zone-weights pipe=0
+exits 2
+says err "must be a number from 0.001 to 1000"
+if command -v jq >/dev/null; then
+  jq -e '([.layers.patches[] | .name] | sort) ==
+    ["casing", "pipe_inside_back", "pipe_outside_back"]' \
+    demo/exchanger.report.json >out || fail "exchanger: layers"
+fi
+if command -v checkMesh >/dev/null; then
+  (cd demo/exchanger.openfoam && splitMeshRegions -cellZones -overwrite) >out 2>err
+  for zone in hot pipe cold; do
+    (cd demo/exchanger.openfoam && checkMesh -region $zone) >out 2>err
+    says out "Mesh OK."
+  done
+fi
+
 # --- refused ---------------------------------------------------------------------
 
 # refused TEXT OPTION...: two.stl is refused with the text.
