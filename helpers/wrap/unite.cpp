@@ -10,6 +10,7 @@
 #include <string>
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Surface_mesh.h>
 
@@ -49,8 +50,10 @@ struct Tracker : PMP::Corefinement::Default_visitor<Body> {
   }
 };
 
-/* Number of the shell of each triangle, in the order of their first ones. */
-std::vector<size_t> shells_of(const vg_serve_surface &s, size_t &n)
+/* Number of the shell of each triangle, in the order of their first ones. The
+ * first n_wall triangles count as one shell. */
+std::vector<size_t> shells_of(const vg_serve_surface &s, size_t n_wall,
+                              size_t &n)
 {
   std::vector<uint32_t> root(s.n_point);
   std::vector<size_t> number(s.n_point, SIZE_MAX), shell(s.n_tri);
@@ -60,6 +63,8 @@ std::vector<size_t> shells_of(const vg_serve_surface &s, size_t &n)
   };
 
   std::iota(root.begin(), root.end(), 0u);
+  for (size_t i = 1; i < n_wall; i++)
+    root[find(s.tri[i][0])] = find(s.tri[0][0]);
   for (size_t i = 0; i < s.n_tri; i++)
     for (int k = 1; k < 3; k++) root[find(s.tri[i][k])] = find(s.tri[i][0]);
   n = 0;
@@ -72,10 +77,10 @@ std::vector<size_t> shells_of(const vg_serve_surface &s, size_t &n)
   return shell;
 }
 
-std::vector<Body> split(const vg_serve_surface &s)
+std::vector<Body> split(const vg_serve_surface &s, size_t n_wall)
 {
   size_t n;
-  const std::vector<size_t> shell = shells_of(s, n);
+  const std::vector<size_t> shell = shells_of(s, n_wall, n);
   std::vector<Body> body(n);
   std::vector<From> from;
   std::vector<Body::Vertex_index> place(s.n_point, Body::null_vertex());
@@ -97,8 +102,6 @@ std::vector<Body> split(const vg_serve_surface &s)
       throw std::runtime_error("a shell is not a manifold");
     from[shell[i]][f] = static_cast<uint32_t>(i);
   }
-  for (const Body &b : body)
-    if (!CGAL::is_closed(b)) throw std::runtime_error("a shell is open");
   return body;
 }
 
@@ -118,9 +121,8 @@ void combine(Body &a, Body &b, bool subtract)
   if (!good) throw std::runtime_error("the common surface is not a manifold");
 }
 
-vg_united rounded(Body &b)
+void add_rounded(Body &b, vg_united &to)
 {
-  vg_united to;
   From from = from_of(b);
   std::vector<uint32_t> place(b.number_of_vertices() +
                               b.number_of_removed_vertices());
@@ -135,18 +137,45 @@ vg_united rounded(Body &b)
       to.tri.push_back(place[v]);
     to.from.push_back(from[f]);
   }
-  return to;
+}
+
+/* Divides the triangles of a and b along the curves on which they meet. */
+void corefine(Body &a, Body &b)
+{
+  std::map<const Body *, From> from;
+  Tracker tracker;
+
+  if (!CGAL::do_overlap(PMP::bbox(a), PMP::bbox(b))) return;
+  from[&a] = from_of(a);
+  from[&b] = from_of(b);
+  tracker.from = &from;
+  PMP::corefine(a, b, CGAL::parameters::visitor(tracker));
 }
 
 } // namespace
 
 vg_united vg_unite(const vg_serve_surface &s, bool subtract)
 {
-  std::vector<Body> body = split(s);
+  std::vector<Body> body = split(s, 0);
+  vg_united to;
   const size_t first = subtract ? 1 : 0;
 
+  for (const Body &b : body)
+    if (!CGAL::is_closed(b)) throw std::runtime_error("a shell is open");
   for (size_t i = first + 1; i < body.size(); i++)
     combine(body[first], body[i], false);
   if (subtract && body.size() > 1) combine(body[0], body[1], true);
-  return rounded(body[0]);
+  add_rounded(body[0], to);
+  return to;
+}
+
+vg_united vg_imprint(const vg_serve_surface &s, size_t n_wall)
+{
+  std::vector<Body> body = split(s, n_wall);
+  vg_united to;
+
+  for (size_t i = 0; i < body.size(); i++)
+    for (size_t k = i + 1; k < body.size(); k++) corefine(body[i], body[k]);
+  for (Body &b : body) add_rounded(b, to);
+  return to;
 }

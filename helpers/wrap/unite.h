@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* helpers/wrap/unite.h: union of closed shells by exact arithmetic. */
+/* helpers/wrap/unite.h: union of closed shells, and common curves of surfaces,
+ * by exact arithmetic. */
 #ifndef VG_HELPERS_WRAP_UNITE_H
 #define VG_HELPERS_WRAP_UNITE_H
 
@@ -22,5 +23,12 @@ struct vg_united {
  * surface of the union is not a manifold. Intersections of a shell with itself
  * are not detected. */
 vg_united vg_unite(const vg_serve_surface &s, bool subtract);
+
+/* Divide the triangles of s along the curves on which surfaces meet: the walls,
+ * which are the first n_wall triangles, and the sheets, sets of other triangles
+ * connected by points. Surfaces have no common points, may be open, and do not
+ * intersect themselves. Triangles of the walls come first in the result. Throws
+ * std::runtime_error if a surface is not a manifold. */
+vg_united vg_imprint(const vg_serve_surface &s, size_t n_wall);
 
 #endif

@@ -200,6 +200,10 @@ bool answer(const vg_helper_message &m, const vg_serve_surface &s)
     give(made);
     return true;
   case VG_HELPER_UNITE: give_united(vg_unite(s, m.option == 1)); return true;
+  case VG_HELPER_IMPRINT:
+    if (m.option > s.n_tri) return false;
+    give_united(vg_imprint(s, m.option));
+    return true;
   case VG_HELPER_NEAREST: find_nearest(Input(s), s); return true;
   case VG_HELPER_OUTSIDE: find_outside(Input(s), s); return true;
   case VG_HELPER_CROSSINGS: find_crossings(Input(s), s); return true;

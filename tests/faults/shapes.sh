@@ -17,6 +17,14 @@ finned() {
   printf 'f %s\n' "1 3 7" "1 7 8"
 }
 
+# An octahedron and a fin that crosses it.
+crossed() {
+  octahedron
+  printf 'v %s\n' "-1.5 0.1 -0.05" "1.5 0.15 -0.07" "0.1 0.2 1.5"
+  echo "g fin"
+  echo "f 7 8 9"
+}
+
 # Half of an octahedron, open at y = 0, with a fin that ends there.
 half_finned() {
   printf 'v %s\n' "1 0 0" "-1 0 0" "0 1 0" "0 0 1" "0 0 -1" "1.5 0 0" "1.5 0.5 0"

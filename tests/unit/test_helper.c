@@ -156,7 +156,7 @@ static void identified(void **state)
   assert_true(h.is_found);
   assert_string_equal(h.path, PROGRAM);
   assert_string_equal(h.identity, "Script 1, vanguard-tetgen 0123456789abcdef, "
-                                  "format 2");
+                                  "format 3");
 }
 
 /* A helper that is killed says nothing about the triangles. It starts for its

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /** Version of the format. Helpers with another version are refused. */
-#define VG_HELPER_FORMAT 2
+#define VG_HELPER_FORMAT 3
 
 #define VG_HELPER_MAGIC "VGHELPER"
 #define VG_HELPER_ORDER 0x01020304u
@@ -55,6 +55,10 @@ enum {
                                subtract all others from the first; answered by
                                VG_HELPER_SURFACE, then VG_HELPER_COUNTS: the
                                input triangle of each triangle */
+  VG_HELPER_IMPRINT = 15,   /* option: the first triangles, which are walls;
+                               divide surfaces without common points along the
+                               curves on which they meet; answered like
+                               VG_HELPER_UNITE, triangles of walls first */
 
   /* Replies. */
   VG_HELPER_CELLS = 20,    /* n[0] added points, n[1] tetrahedra */

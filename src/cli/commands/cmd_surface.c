@@ -158,18 +158,21 @@ static vg_status write_file(const struct vg_problem *p, struct files *f,
                             const char *suffix, const json_t *o,
                             struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->boundary.surface;
+  struct vg_mesh m = VG_MESH_INIT;
   char *path = vg_outputs_temp_path(&f->outputs, suffix);
   vg_status st;
 
   if (!path) return vg_fail_memory(err, "a path");
+  VG_TRY(vg_boundary_single_sides(&p->boundary, &m, err));
   if (!strcmp(suffix, "mapbc"))
-    st = vg_mapbc_write(path, m, VG_MAPBC_VGRID, p->asked.title, NULL, err);
+    st = vg_mapbc_write(path, &m, VG_MAPBC_VGRID, p->asked.title, NULL, err);
   else if (!strcmp(suffix, "surface.vtu"))
     st = write_vtu(path, &p->boundary, err);
   else if (!strcmp(suffix, "surface.json"))
     st = vg_json_write(path, o, "the report", err);
-  else st = vg_format_write(path, m, err);
+  else st = vg_format_write(path, &m, err);
+done:
+  vg_mesh_release(&m);
   free(path);
   return st;
 }

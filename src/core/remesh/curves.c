@@ -105,7 +105,9 @@ int vg_curves_is_hard(const struct vg_curves_options *o, const struct vg_ref *r,
 {
   uint32_t p, q;
 
-  if (r->mate[h] == VG_REF_NONE || (o->stretch && o->stretch[h] > 1)) return 1;
+  if (r->mate[h] == VG_REF_NONE ||
+      (o->stretch && (o->stretch[h] > 1 || o->stretch[h] < 0)))
+    return 1;
   p = o->tri_patch[h / 3];
   q = o->tri_patch[r->mate[h] / 3];
   if (p == q) return 0;
@@ -253,6 +255,7 @@ static void drop_speck(struct finder *f, uint32_t p)
   while (h != VG_REF_NONE && n < 64) {
     uint32_t q = other_end(f->r, h, p);
 
+    if (f->o->stretch && f->o->stretch[h] < 0) return;
     list[n++] = h;
     sum += vg_distance(f->r->point[p], f->r->point[q]);
     if (sum > most) return;
@@ -368,8 +371,10 @@ done:
 static void find_corners(struct finder *f)
 {
   for (uint32_t p = 0; p < f->r->n_point; p++) {
+    const int is_given = p < f->o->n_still && f->o->still[p];
+
     if (!f->degree[p]) continue;
-    f->c->corner[p] = f->degree[p] != 2 || turns(f, p);
+    f->c->corner[p] = f->degree[p] != 2 || is_given || turns(f, p);
     f->c->n_corner += f->c->corner[p];
   }
 }

@@ -43,8 +43,11 @@ struct vg_curves_options {
   const uint8_t *kept;   /* [n_patch] 1: borders between two such patches are
                             feature edges, too, unless they are closed. May be
                             NULL. */
-  const double *stretch; /* [3 n_tri] Half-edges with values above 1 are feature
-                            edges; may be NULL. */
+  const double *stretch; /* [3 n_tri] Half-edges with values above 1 or below 0
+                            are feature edges; may be NULL. */
+  const uint8_t *still;  /* [n_still] Points of feature curves with values above
+                            0 are feature corners; may be NULL. */
+  size_t n_still;
   const uint8_t *closed; /* [3 n_tri] Edges that are not sharp edges at any
                             angle; may be NULL. */
 };

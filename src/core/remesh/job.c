@@ -5,6 +5,7 @@
  * curves and sizes are then computed again. */
 #include "core/remesh/job.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,6 +75,14 @@ static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
   return VG_OK;
 }
 
+/* Surfaces that end on the outer boundary have sizes of bodies there. */
+static int has_line(const struct vg_remesh_job *j, size_t t)
+{
+  const double *by = j->o->stretch ? j->o->stretch + 3 * t : NULL;
+
+  return by && (by[0] < 0 || by[1] < 0 || by[2] < 0);
+}
+
 /* Set tolerance and size bounds from the length of the body. The outer boundary
  * of a whole domain has its own upper bound. */
 static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
@@ -102,7 +111,7 @@ static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
     j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
     if (!j->cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
     for (size_t t = 0; t < m->n_tri; t++)
-      j->cap[t] = outer[t] ? INFINITY : j->far;
+      j->cap[t] = outer[t] && !has_line(j, t) ? INFINITY : j->far;
     if (!(j->o->h_max > 0)) r->h_max = fmax(r->h_max, H_OUTER * whole);
   }
   r->h_min = j->o->h_min > 0 ? j->o->h_min : fmin(H_MIN * r->length, r->h_max);
@@ -352,7 +361,9 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                  .patch = j->whole->patch,
                                  .hard = o->hard,
                                  .kept = j->kept,
-                                 .stretch = o->stretch };
+                                 .stretch = o->stretch,
+                                 .still = o->still,
+                                 .n_still = o->still ? j->whole->n_point : 0 };
   vg_status st;
 
   VG_TRY(find_lines(j, &c, err));
@@ -370,6 +381,21 @@ done:
 }
 
 /* --- small faults -------------------------------------------------------- */
+
+/* New points are not still; the others have the first numbers, as before. */
+static vg_status adopt_still(struct vg_remesh_job *j, const struct vg_mesh *m,
+                             struct vg_error *err)
+{
+  const size_t n = j->whole->n_point;
+  uint8_t *still = vg_calloc(m->n_point, 1);
+
+  assert(m->n_point >= n);
+  if (!still) return vg_fail_memory(err, "the sizes on the surface");
+  memcpy(still, j->o->still, n);
+  free(j->own_still);
+  j->own_still = still;
+  return VG_OK;
+}
 
 /* Replace the working surface by m, and the per-point and per-triangle options
  * by arrays for m. tri_from [n_tri] and half_from [3 n_tri] are the numbers in
@@ -397,9 +423,15 @@ static vg_status adopt(struct vg_remesh_job *j, struct vg_mesh *m,
 
     if (from != VG_REF_NONE) stretch[h] = j->o->stretch[from];
   }
+  if (j->o->still && adopt_still(j, m, err) < 0) {
+    free(of_tri);
+    free(stretch);
+    return VG_ERR_MEMORY;
+  }
   j->own = *j->o;
   j->own.cap = *cap;
   j->own.stretch = stretch;
+  if (j->o->still) j->own.still = j->own_still;
   j->o = &j->own;
   free(j->cap);
   free(j->own_cap);
@@ -481,8 +513,12 @@ static double leap(const struct vg_remesh_job *j, uint32_t h, double *grown)
 /* Number of pieces into which feature edge h must be split. */
 static int pieces(const struct vg_remesh_job *j, uint32_t h)
 {
+  const uint8_t *still = j->o->still;
   double grown;
 
+  if (still && still[vg_ref_from(&j->ref, h)] == VG_REMESH_KEPT &&
+      still[vg_ref_to(&j->ref, h)] == VG_REMESH_KEPT)
+    return 1;
   if (!(leap(j, h, &grown) > LEAP)) return 1;
   grown = edge_length(&j->ref, h) / grown;
   return grown < CUTS ? (int)grown + 2 : CUTS;
@@ -599,7 +635,7 @@ static vg_status cut_edges(struct vg_remesh_job *j, int lines, int *any,
   }
   vg_job_release_reference(j);
   VG_TRY(adopt(j, &s.mesh, s.tri_from, s.half_from, &cap, err));
-  VG_TRY(vg_job_set_reference(j, 1, err));
+  VG_TRY(vg_job_set_reference(j, !j->has_kept, err));
 done:
   free(n);
   free(cap);
@@ -647,6 +683,21 @@ static vg_status keep_fixed(struct vg_remesh_job *j, struct vg_error *err)
   return VG_OK;
 }
 
+/* Marks the ends of feature edges that stay. */
+static vg_status keep_lines(struct vg_remesh_job *j, struct vg_error *err)
+{
+  const struct vg_mesh *m = j->whole;
+
+  if (!j->has_kept || j->looks) return VG_OK;
+  j->keep = vg_calloc(m->n_point, 1);
+  if (!j->keep) return vg_fail_memory(err, "the remeshed surface");
+  for (size_t p = 0; p < m->n_point; p++) {
+    if (j->o->still[p] == VG_REMESH_KEPT) j->keep[p] = VG_WORK_LINE;
+    j->n_keep += j->keep[p] != 0;
+  }
+  return VG_OK;
+}
+
 /* --- borders between patches --------------------------------------------- */
 
 static vg_status keep_borders(struct vg_remesh_job *j, struct vg_error *err)
@@ -671,6 +722,8 @@ static vg_status prepare(struct vg_remesh_job *j, int cuts,
   const struct vg_remesh_options *o = j->o;
   vg_status st;
 
+  assert(!o->still || (!o->is_reference && !o->fixed));
+  j->has_kept = o->still && memchr(o->still, VG_REMESH_KEPT, j->whole->n_point);
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(keep_borders(j, err));
@@ -681,10 +734,11 @@ static vg_status prepare(struct vg_remesh_job *j, int cuts,
   j->n_source = j->cap_source = o->n_source;
   if (o->is_reference && !j->looks) VG_TRY(clean(j, err));
   VG_TRY(keep_fixed(j, err));
-  VG_TRY(vg_job_set_reference(j, !j->looks && !o->fixed, err));
+  VG_TRY(vg_job_set_reference(j, !j->looks && !o->fixed && !j->has_kept, err));
   if (j->looks || o->fixed) goto done;
   if (cuts) VG_TRY(cut_edges(j, 1, &j->is_cut, err));
   VG_TRY(bisect_edges(j, err));
+  VG_TRY(keep_lines(j, err));
 done:
   return st;
 }
@@ -695,6 +749,7 @@ static vg_status restart(struct vg_remesh_job *j, const struct vg_mesh *m,
 {
   vg_job_release(j);
   j->cap = j->own_cap = j->own_stretch = NULL;
+  j->own_still = NULL;
   j->kept = NULL;
   j->width = NULL;
   j->source = NULL;
@@ -735,6 +790,7 @@ void vg_job_release(struct vg_remesh_job *j)
   free(j->source);
   free(j->own_cap);
   free(j->own_stretch);
+  free(j->own_still);
   free(j->kept);
   free(j->width);
   free(j->keep);

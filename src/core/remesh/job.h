@@ -18,6 +18,8 @@ struct vg_remesh_job {
   const struct vg_remesh_options *o;
   struct vg_remesh_options own; /* Options for `base`. */
   double *own_cap, *own_stretch;
+  uint8_t *own_still;
+  int has_kept;  /* o->still has VG_REMESH_KEPT. */
   uint8_t *kept; /* [n_patch] Patches that keep their borders; may be NULL. */
   double *width; /* [n_patch] Widths of the patches; NULL with `kept`. */
   struct vg_mesh base; /* Storage of `whole` once it is not the input
@@ -41,8 +43,9 @@ struct vg_remesh_job {
                                at intersections. */
   size_t n_source, cap_source;
   uint8_t *keep;     /* [whole->n_point] VG_WORK_KEPT, VG_WORK_FIXED: corner of
-                        input triangles that are kept unchanged; NULL: none.
-                        Strips are then not closed. */
+                        input triangles that are kept unchanged; VG_WORK_LINE:
+                        end of feature edges that are; NULL: none. Strips are
+                        then not closed. */
   size_t n_keep;     /* Number of such points. */
   double n_expected; /* Number of new triangles by the sizes. */
   int is_all_kept;   /* The last search found no further input triangles to

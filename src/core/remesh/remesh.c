@@ -126,12 +126,20 @@ static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
                                struct vg_error *err)
 {
   for (size_t h = 0; stretch && h < 3 * m->n_tri; h++)
-    if (!(stretch[h] >= 0 && stretch[h] <= VG_REMESH_STRETCH))
+    if (!(stretch[h] >= 0 && stretch[h] <= VG_REMESH_STRETCH) &&
+        stretch[h] != VG_REMESH_FEATURE)
       return vg_fail(err, VG_ERR_INPUT,
                      "edge %zu of triangle %zu: stretching ratio %g is out "
                      "of range (0 to %d)",
                      h % 3 + 1, h / 3 + 1, stretch[h], VG_REMESH_STRETCH);
   return VG_OK;
+}
+
+static int has_stretch(const double *by, size_t n)
+{
+  for (size_t h = 0; by && h < n; h++)
+    if (by[h] > 0) return 1;
+  return 0;
 }
 
 /* --- one attempt ---------------------------------------------------------- */
@@ -523,7 +531,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                        .stop = j->o->stop };
   vg_status st;
 
-  if (stretch.by) w.stretch = &stretch;
+  if (has_stretch(stretch.by, 3 * j->ref.n_tri)) w.stretch = &stretch;
   VG_TRY(ask_sources(j, &w, &set, err));
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
   if (!j->looks) w.coarse = 1 << vg_sizes_levels(&j->ref, w.field, r->h_max);
@@ -754,5 +762,23 @@ done:
   free(j.r.bad);
   vg_job_release(&j);
   vg_mesh_release(&out);
+  return st;
+}
+
+vg_status vg_remesh_sizes(const struct vg_mesh *m,
+                          const struct vg_remesh_options *o, double *size,
+                          struct vg_error *err)
+{
+  struct vg_remesh_job j = { .whole = m, .given = m, .o = o, .looks = 1 };
+  vg_status st;
+
+  VG_TRY(check_surface(m, err));
+  VG_TRY(check_options(o, err));
+  VG_TRY(check_stretch(m, o->stretch, err));
+  VG_TRY(vg_job_prepare(&j, err));
+  for (size_t p = 0; p < m->n_point; p++)
+    size[p] = fmin(fmax(j.ref.size[p], j.r.h_min), j.r.h_max);
+done:
+  vg_job_release(&j);
   return st;
 }

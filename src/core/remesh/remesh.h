@@ -74,7 +74,10 @@ struct vg_remesh_options {
                                     along it are this many times as long as
                                     across it; the ratio fades out with
                                     distance. 0 to VG_REMESH_STRETCH; 1 or less:
-                                    not stretched. May be NULL. */
+                                    not stretched, VG_REMESH_FEATURE: a feature
+                                    edge that is not stretched. May be NULL. */
+  const uint8_t *still;          /* [n_point] VG_REMESH_STILL, VG_REMESH_KEPT:
+                                    points that stay; 0: others. NULL: none. */
   int is_body;                   /* 1: a body in open air, never the boundary of
                                     a whole domain. */
   int is_reference;              /* 1: the surface may intersect itself and have
@@ -97,6 +100,13 @@ struct vg_remesh_options {
   struct vg_stop stop;  /* Polled before every change. */
 };
 #define VG_REMESH_STRETCH 20
+#define VG_REMESH_FEATURE (-1)
+
+/* Points that stay where they are. STILL: a feature corner, if the point is on
+ * a feature curve. KEPT: feature edges between two such points stay, too, and
+ * narrow strips are not closed. Not together with is_reference or fixed. */
+enum { VG_REMESH_STILL = 1, VG_REMESH_KEPT };
+
 #define VG_REMESH_OPTIONS_INIT                                                 \
   {                                                                            \
     .feature_angle = 40, .per_turn = 24, .growth = 1.2, .scale = 1,            \
@@ -209,6 +219,15 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
 vg_status vg_remesh_judge(const struct vg_mesh *m,
                           const struct vg_remesh_options *o,
                           struct vg_remesh_report *r, struct vg_error *err);
+
+/** The target edge lengths of vg_remesh at the points of m, as the shape
+ * requests them; sources and maps of sizes do not count.
+ *
+ * @param size  out: [m->n_point] already multiplied by o->scale
+ * Requirements, errors and cost as for vg_remesh_judge. */
+vg_status vg_remesh_sizes(const struct vg_mesh *m,
+                          const struct vg_remesh_options *o, double *size,
+                          struct vg_error *err);
 
 /** Name of a cause: "corner", "strip", ... Static. */
 const char *vg_remesh_cause_name(enum vg_remesh_cause c);

@@ -23,8 +23,9 @@ enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 /* KEPT: edges between such points stay. FIXED: only those of triangles with
- * three fixed corners stay, so that edges across other patches are split. */
-enum { VG_WORK_KEPT = 1, VG_WORK_FIXED };
+ * three fixed corners stay, so that edges across other patches are split. LINE:
+ * only feature edges stay. */
+enum { VG_WORK_KEPT = 1, VG_WORK_FIXED, VG_WORK_LINE };
 
 struct vg_tris_point {
   double x[3];
@@ -43,7 +44,8 @@ struct vg_tris_point {
                              new edges to it at all, because its triangles in
                              the block form several umbrellas. */
   uint8_t kept;           /* VG_WORK_KEPT, VG_WORK_FIXED: corner of input
-                             triangles that are kept unchanged. */
+                             triangles that are kept unchanged; VG_WORK_LINE:
+                             end of feature edges that are. */
   uint64_t changed;       /* Clock of the last change of its triangles. */
   struct vg_metric asked; /* Target length; the form is not set if the surface
                              is not stretched. */
@@ -90,8 +92,8 @@ struct vg_tris {
   double h_min, h_max;
   int threads;         /* Used by vg_tris_begin. */
   const uint8_t *keep; /* [points of ref] Values of vg_tris_point.kept. Input
-                          triangles with three marked corners are kept
-                          unchanged; NULL: none. */
+                          triangles with three corners marked KEPT or FIXED are
+                          kept unchanged; NULL: none. */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
     cap_stamp;
   size_t n_line, cap_line;
@@ -185,9 +187,11 @@ static inline int vg_tris_stays(const struct vg_tris *w, uint32_t h)
   const uint8_t from = w->point[vg_tris_from(w, h)].kept;
   const uint8_t to = w->point[vg_tris_to(w, h)].kept;
 
-  return vg_tris_is_border(w, h) ||
-         (from && to &&
-          (from + to < 2 * VG_WORK_FIXED || vg_tris_is_kept_side(w, h)));
+  if (vg_tris_is_border(w, h)) return 1;
+  if (!from || !to) return 0;
+  if (from == VG_WORK_LINE && to == VG_WORK_LINE) return w->edge[h] != 0;
+  return from != VG_WORK_FIXED || to != VG_WORK_FIXED ||
+         vg_tris_is_kept_side(w, h);
 }
 
 /** May a new edge between a and b be created? */

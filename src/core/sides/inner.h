@@ -38,6 +38,14 @@ struct vg_inner_report {
   double at[3];  /* near it */
 };
 
+/** Orient the sheets of m as vg_inner_double does.
+ *
+ * @param report  set; n_turned and turned_at tell what was turned
+ * VG_ERR_GEOMETRY if a sheet has only one side; m is then unchanged.
+ * VG_ERR_MEMORY. O(n log n). */
+vg_status vg_inner_turn(struct vg_mesh *m, const uint8_t *is_inner,
+                        struct vg_inner_report *report, struct vg_error *err);
+
 /** Double the sheets of a boundary.
  *
  * @param m         triangles into the fluid, closed without the sheets, whose

@@ -125,3 +125,14 @@ done:
   free(o.stack);
   return st;
 }
+
+vg_status vg_inner_turn(struct vg_mesh *m, const uint8_t *is_inner,
+                        struct vg_inner_report *report, struct vg_error *err)
+{
+  const struct vg_inner_work s = { .m = m,
+                                   .is_inner = is_inner,
+                                   .report = report };
+
+  *report = (struct vg_inner_report){ 0 };
+  return vg_inner_orient(&s, err);
+}

@@ -124,9 +124,10 @@ static const char *remedy(const struct vg_mesh *m, const struct vg_defect *d)
            "bodies, or use --wrap";
   case VG_DEFECT_INTERSECTION:
     if (is_inner(m, d->face[0]) || is_inner(m, d->face[1]))
-      return "these faces cross, overlap or touch; let the inner surface end "
-             "there with common edges, or move it away; a symmetry plane or "
-             "farfield on which it ends must be a patch of the surface file";
+      return "these faces cross, overlap or touch; set remesh_surface to yes, "
+             "which cuts the inner surface there, or let it end there with "
+             "common edges, or move it away; a farfield on which it ends must "
+             "be a patch of the surface file";
     return "these faces cross, overlap or touch; unite the bodies, or move "
            "the surfaces apart there";
   case VG_DEFECT_SHELL: return shell_text(d);

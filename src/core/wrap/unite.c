@@ -372,14 +372,12 @@ static void report(const struct work *w, struct vg_unite_report *r)
 }
 
 /* Without the helper another surface would be made, or none. */
-static vg_status check_helper(struct vg_error *err)
+static vg_status check_helper(const char *what, struct vg_error *err)
 {
   char why[200];
 
   if (vg_wrap_is_available(why, sizeof why)) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "closed parts of the surface cross or touch each other, and "
-                 "uniting them needs vanguard-wrap: %s",
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s needs vanguard-wrap: %s", what,
                  why);
 }
 
@@ -402,7 +400,9 @@ vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
     st = VG_BLOCKED;
     goto done;
   }
-  VG_TRY(check_helper(err));
+  VG_TRY(check_helper("closed parts of the surface cross or touch each other, "
+                      "and uniting them",
+                      err));
   VG_TRY(take_rest(&w, &made, err));
   n_rest = made.n_tri;
   for (uint32_t i = 0; i < w.n_shell; i++) {
@@ -417,5 +417,34 @@ done:
   release(&w);
   vg_edges_release(&e);
   vg_mesh_release(&made);
+  return st;
+}
+
+vg_status vg_imprint(struct vg_mesh *m, size_t n_wall,
+                     const struct vg_stop *stop, size_t *n_made,
+                     struct vg_error *err)
+{
+  struct vg_mesh made = VG_MESH_INIT;
+  uint32_t *from = NULL;
+  vg_status st;
+
+  VG_TRY(check_helper("inner surfaces cross other surfaces, and finding the "
+                      "common curves",
+                      err));
+  st = vg_wrap_imprint(m, n_wall, stop, &made, &from, err);
+  if (st != VG_OK) goto done;
+  made.patch = vg_alloc(m->n_patch, sizeof *made.patch);
+  if (!made.patch) VG_TRY(vg_fail_memory(err, "the inner surfaces"));
+  if (m->n_patch) memcpy(made.patch, m->patch, m->n_patch * sizeof *m->patch);
+  made.n_patch = m->n_patch;
+  *n_made = 0;
+  for (size_t t = 0; t < made.n_tri; t++) {
+    made.tri_patch[t] = m->tri_patch[from[t]];
+    *n_made += from[t] < n_wall;
+  }
+  vg_mesh_move(m, &made);
+done:
+  vg_mesh_release(&made);
+  free(from);
   return st;
 }

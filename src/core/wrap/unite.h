@@ -55,4 +55,19 @@ vg_status vg_unite(struct vg_mesh *m, const struct vg_surface_report *check,
                    const struct vg_unite_options *o, struct vg_unite_report *r,
                    struct vg_error *err);
 
+/** Divide the triangles of surfaces that may be open along the curves on which
+ * these surfaces meet, by exact arithmetic; new points are rounded to double.
+ *
+ * @param m       triangles of walls, n_wall, and then of sheets. Sheets have no
+ *                common points with each other and with the walls, but may have
+ *                common places. No surface intersects itself
+ * @param n_made  out: triangles of walls in the result, which come first
+ *
+ * Triangles keep their patches; patches keep their order. VG_BLOCKED, with m
+ * unchanged: a surface is not a manifold. Otherwise errors and cost of
+ * vg_unite. */
+vg_status vg_imprint(struct vg_mesh *m, size_t n_wall,
+                     const struct vg_stop *stop, size_t *n_made,
+                     struct vg_error *err);
+
 #endif

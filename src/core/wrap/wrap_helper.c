@@ -154,12 +154,14 @@ done:
   return st;
 }
 
-vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
-                        const struct vg_stop *stop, struct vg_mesh *out,
-                        uint32_t **from, struct vg_error *err)
+/* A request that is answered by a surface, and the triangle of m of each of its
+ * triangles. */
+static vg_status combine(const struct vg_mesh *m, uint32_t what,
+                         uint32_t option, const struct vg_stop *stop,
+                         struct vg_mesh *out, uint32_t **from,
+                         struct vg_error *err)
 {
-  struct request r = { .m = { .what = VG_HELPER_UNITE,
-                              .option = subtracts != 0 } };
+  struct request r = { .m = { .what = what, .option = option } };
   vg_status st = ask(&r, m, 0, NULL, stop, err);
 
   if (st < 0) return st;
@@ -181,6 +183,21 @@ vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
 done:
   vg_helper_close(&r.child);
   return st;
+}
+
+vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
+                        const struct vg_stop *stop, struct vg_mesh *out,
+                        uint32_t **from, struct vg_error *err)
+{
+  return combine(m, VG_HELPER_UNITE, subtracts != 0, stop, out, from, err);
+}
+
+vg_status vg_wrap_imprint(const struct vg_mesh *m, size_t n_wall,
+                          const struct vg_stop *stop, struct vg_mesh *out,
+                          uint32_t **from, struct vg_error *err)
+{
+  assert(n_wall <= m->n_tri && n_wall <= UINT32_MAX);
+  return combine(m, VG_HELPER_IMPRINT, (uint32_t)n_wall, stop, out, from, err);
 }
 
 /* Ask for a count for each of n items, which have n_more points. */

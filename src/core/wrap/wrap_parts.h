@@ -34,6 +34,16 @@ vg_status vg_wrap_unite(const struct vg_mesh *m, int subtracts,
                         const struct vg_stop *stop, struct vg_mesh *out,
                         uint32_t **from, struct vg_error *err);
 
+/** Divide surfaces without common points along the curves on which they meet.
+ *
+ * @param n_wall  the first triangles, which are one surface; each other set of
+ *                triangles connected by points is one
+ * @param out, from  as for vg_wrap_unite; the parts of walls come first
+ * VG_BLOCKED: a surface is not a manifold. */
+vg_status vg_wrap_imprint(const struct vg_mesh *m, size_t n_wall,
+                          const struct vg_stop *stop, struct vg_mesh *out,
+                          uint32_t **from, struct vg_error *err);
+
 /** Classify points as inside or outside the closed surface m by the parity of a
  * ray.
  *

@@ -27,7 +27,6 @@ static vg_status refuse_changes(const struct vg_boundary *b,
   const struct vg_settings *s = &b->read->settings;
   const char *what = s->weld > 0                  ? "weld"
                    : s->wrap > 0                  ? "wrap"
-                   : s->remesh == VG_ANSWER_YES   ? "remesh_surface"
                    : s->swap == VG_ANSWER_YES     ? "surface_swap"
                    : b->model.cad                 ? "a CAD model"
                    : strcmp(s->mesher, "builtin") ? "mesher"
@@ -225,7 +224,7 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_settings *s,
     "the figures of the surface do not include the %zu triangles of inner "
     "surfaces, which are checked when the surface is closed",
     b->inner.n_tri);
-  b->is_remeshed = 0;
+  if (s->remesh != VG_ANSWER_YES) b->is_remeshed = 0;
 done:
   free(role);
   return st;
@@ -452,11 +451,8 @@ static vg_status put_sides(struct vg_boundary *b, struct vg_mesh *all,
           "of points were added",
           r.n_tri, r.n_point);
   if (r.n_turned)
-    vg_note(b->notes,
-            "%zu triangles of inner surfaces were turned, the first one near "
-            "(%g, %g, %g), so that each connected piece of a patch is oriented "
-            "like its first triangle",
-            r.n_turned, r.turned_at[0], r.turned_at[1], r.turned_at[2]);
+    vg_note(b->notes, VG_INNER_TURNED, r.n_turned, r.turned_at[0],
+            r.turned_at[1], r.turned_at[2]);
   if (r.n_cut)
     vg_note(b->notes,
             "%zu edges of inner surfaces were cut, because triangles or edges "

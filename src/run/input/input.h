@@ -315,6 +315,12 @@ vg_status vg_boundary_measure(const struct vg_boundary *b,
                               const struct vg_mesh *m, struct vg_sizing **out,
                               struct vg_error *err);
 
+/** The surface of b with its inner surfaces, whose triangles occur once, and
+ * without the patches of their backs, as in a surface file. *out is empty
+ * before. VG_ERR_MEMORY. */
+vg_status vg_boundary_single_sides(const struct vg_boundary *b,
+                                   struct vg_mesh *out, struct vg_error *err);
+
 struct vg_shape_options {
   int threads;     /* Number of threads; 0: one per core. */
   int remesh_open; /* 1: also remesh an open surface that is not a half

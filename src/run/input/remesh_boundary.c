@@ -88,9 +88,11 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
   else if (keeps)
     vg_note(b->notes,
             "%.0f %% of the triangles have an angle below 10 degrees, and so "
-            "will the cells on them: a surface with %s is not remeshed; give "
-            "one with better triangles",
-            100 * share, keeps);
+            "will the cells on them: a surface with %s is not remeshed; %s",
+            100 * share, keeps,
+            b->read->settings.n_periodic
+              ? "give one with better triangles"
+              : "--remesh-surface yes remeshes walls and inner surfaces");
   else if (!(b->read->settings.wrap > 0) && !vg_boundary_is_stretched(b))
     vg_note(b->notes,
             "%.0f %% of the triangles have an angle below 10 degrees, and so "
@@ -173,6 +175,7 @@ static vg_status given_areas(struct vg_boundary *b, const struct vg_mesh *given,
 struct remesh_request {
   const uint8_t *hard; /* [n_patch] May be NULL. */
   const struct vg_surface_sizes *sizes;
+  const struct vg_inner_lines *lines;
 };
 
 static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
@@ -195,6 +198,7 @@ static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
   o.cap = sizes->cap;
   o.across = sizes->across;
   o.stretch = sizes->stretch;
+  o.still = q->lines->still;
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   return vg_remesh(&b->surface, &o, &b->remeshing.report, err);
@@ -397,6 +401,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
 {
   struct vg_remeshing *r = &b->remeshing;
   struct vg_surface_sizes sizes = { 0 };
+  struct vg_inner_lines lines = VG_INNER_LINES_INIT;
   struct remesh_request q;
   const int has_defects = b->check.n_defect >
                           b->check.count[VG_DEFECT_OPEN_EDGE];
@@ -419,15 +424,20 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
   VG_TRY(vg_boundary_field(b, sizes.n_source, sizes.source, &sizes.field, err));
-  q = (struct remesh_request){ hard, &sizes };
-  VG_TRY(b->model.cad && !has_defects
-           ? remesh_tessellation(b, &given, &q, show, err)
-           : remesh(b, &q, has_defects, VG_REMESH_ALL, show, err));
+  VG_TRY(vg_inner_lines_find(b, &lines, &sizes.stretch, &sizes.cap, err));
+  q = (struct remesh_request){ hard, &sizes, &lines };
+  VG_TRY(
+    b->model.cad && !has_defects && !lines.still
+      ? remesh_tessellation(b, &given, &q, show, err)
+      : remesh(b, &q, has_defects && !lines.still, VG_REMESH_ALL, show, err));
+  if (lines.still)
+    VG_TRY(vg_junctions_trace(&lines.junctions, 0, &b->surface, err));
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(b, &given, show, err));
   r->is_done = 1;
   vg_display_update(show, "projection", b->surface.n_tri, 0);
   if (b->model.cad) VG_TRY(vg_boundary_put_back(b, show, err));
+  VG_TRY(vg_inner_lines_remesh(b, &lines, show, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
   VG_TRY(vg_surface_spacing_measure(b, r->spacing, err));
@@ -436,6 +446,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   note_areas(b);
   note_size(b);
 done:
+  vg_inner_lines_release(&lines);
   vg_surface_sizes_release(&sizes);
   free(hard);
   vg_mesh_release(&given);

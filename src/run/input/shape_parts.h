@@ -4,6 +4,7 @@
 #ifndef VG_RUN_INPUT_SHAPE_PARTS_H
 #define VG_RUN_INPUT_SHAPE_PARTS_H
 
+#include "core/junction/junction.h"
 #include "run/input/input.h"
 
 /* run/input/input.c ------------------------------------------------------ */
@@ -107,6 +108,83 @@ vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
  * message on an open surface; "" without any. */
 void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
                             size_t size);
+
+/* run/input/inner_remesh.c ------------------------------------------------ */
+
+#define VG_INNER_TURNED                                                        \
+  "%zu triangles of inner surfaces were turned, the first one near "           \
+  "(%g, %g, %g), so that each connected piece of a patch is oriented like "    \
+  "its first triangle"
+
+/* The inner surfaces of a boundary while its walls are remeshed. */
+struct vg_inner_lines {
+  struct vg_mesh all; /* The surface with its inner surfaces. */
+  struct vg_junctions junctions;
+  double *size;   /* [all.n_point] sizes that the shape of inner surfaces
+                     requests; INFINITY elsewhere */
+  uint8_t *still; /* [points of the surface] as in vg_remesh_options; NULL: the
+                     inner surfaces touch no walls. */
+};
+#define VG_INNER_LINES_INIT                                                    \
+  {                                                                            \
+    .all = VG_MESH_INIT, .junctions = VG_JUNCTIONS_INIT                        \
+  }
+
+/** Orients the inner surfaces of `all`, which vg_boundary_with_inner made,
+ * piece by piece, with a note. VG_ERR_GEOMETRY for one with one side.
+ * VG_ERR_MEMORY.
+ */
+vg_status vg_inner_orient_all(const struct vg_boundary *b, struct vg_mesh *all,
+                              struct vg_error *err);
+
+/* Triangles to which others are appended; without patches. */
+struct vg_growing_mesh {
+  struct vg_mesh m;
+  size_t cap[3];
+};
+#define VG_GROWING_MESH_INIT                                                   \
+  {                                                                            \
+    .m = VG_MESH_INIT                                                          \
+  }
+
+/** Appends points and triangles of m. VG_ERR_MEMORY. */
+vg_status vg_grow_mesh(struct vg_growing_mesh *to, const struct vg_mesh *m,
+                       struct vg_error *err);
+
+/** Finds the edges that walls share with inner surfaces, if there are any.
+ *
+ * @param l        VG_INNER_LINES_INIT
+ * @param stretch, cap  in/out: as in vg_remesh_options; are allocated if they
+ * are NULL VG_ERR_GEOMETRY for an inner surface with one side. VG_ERR_MEMORY.
+ */
+vg_status vg_inner_lines_find(const struct vg_boundary *b,
+                              struct vg_inner_lines *l, double **stretch,
+                              double **cap, struct vg_error *err);
+
+/** Remeshes the inner surfaces of b, whose surface is remeshed and was traced
+ * (vg_junctions_trace). b->inner is unchanged on failure. Errors of vg_remesh,
+ * vg_junctions_piece and vg_junctions_trace. */
+vg_status vg_inner_lines_remesh(struct vg_boundary *b, struct vg_inner_lines *l,
+                                struct vg_display *show, struct vg_error *err);
+
+void vg_inner_lines_release(struct vg_inner_lines *l);
+
+/** The largest side of the box around the surface of b. O(n). */
+double vg_boundary_length(const struct vg_boundary *b);
+
+/* run/input/imprint.c ----------------------------------------------------- */
+
+/** Cuts the inner surfaces of b where they cross walls, each other or the plane
+ * of a half model, divides the triangles that are crossed, and removes what is
+ * inside bodies or beyond the plane, with a note. The flow must be decided.
+ *
+ * @param is_cut  out: 0: nothing was changed. 1: the surface must be checked
+ *                again
+ * VG_ERR_GEOMETRY, with b unchanged: an inner surface is lost as a whole, or
+ * enters a body without crossing its surface; VG_ERR_UNSUPPORTED without
+ * vanguard-wrap; otherwise as vg_imprint. */
+vg_status vg_boundary_imprint(struct vg_boundary *b, int *is_cut,
+                              struct vg_display *show, struct vg_error *err);
 
 /** Suggests `baffles` for a surface that is closed without the patches that
  * have open edges, as the end of a message: "; if fluid is on both sides of its

@@ -424,6 +424,18 @@ static vg_status keep_given(struct vg_boundary *b, const struct vg_error *why)
   return VG_OK;
 }
 
+/* Cuts inner surfaces that cross walls. */
+static vg_status imprint(struct vg_boundary *b, struct vg_display *show,
+                         struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  int is_cut;
+  vg_status st = vg_boundary_imprint(b, &is_cut, show, &why);
+
+  if (st < 0) return vg_fail(err, st, "%s: %s", b->read->files.stem, why.text);
+  return is_cut ? check(b, b->flow.kind == VG_FLOW_EXTERNAL, show, err) : VG_OK;
+}
+
 /* One tessellation of the surface: closes it, decides the flow, remeshes it. */
 static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
                        struct vg_display *show, struct vg_error *err)
@@ -444,6 +456,7 @@ static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
   if (is_open_for_good(b, o)) return vg_boundary_refuse_open(b, show, err);
   if (!b->is_remeshed || o->has_maker) goto done;
   if (!is_reference(&b->check)) return defects(b, show, err);
+  if (b->inner.n_tri) VG_TRY(imprint(b, show, err));
   st = vg_boundary_remesh(b, show, &why);
   if (st == VG_ERR_INPUT && b->check.count[VG_DEFECT_NONMANIFOLD_EDGE])
     return defects(b, show, err);

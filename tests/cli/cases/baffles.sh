@@ -239,9 +239,6 @@ vanguard check both.stl --flow external --baffles fin,plate --repair no
 lacks out "unused"
 
 # Messages name settings that exist and remedies that apply.
-vanguard mesh fin.stl --flow internal --baffles fin --remesh-surface yes
-exits 1
-says err "cannot be combined with remesh_surface"
 vanguard mesh fin.stl --flow internal --baffles fin --surface-swap yes
 exits 1
 says err "cannot be combined with surface_swap"

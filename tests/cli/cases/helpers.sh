@@ -98,7 +98,7 @@ fi
 # The helper by itself: it introduces itself, answers through pipes and ends
 # with its input. The job is a tetrahedron with one triangle.
 "$bin/vanguard-tetgen" --version >out
-says out "message format 2"
+says out "message format 3"
 "$bin/vanguard-tetgen" </dev/null | head -c 8 >out
 says out VGHELPER
 "$bin/vanguard-tetgen" --what 2>err </dev/null

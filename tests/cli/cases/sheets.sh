@@ -52,12 +52,12 @@ vanguard plan idle.stl --flow internal --sheets disk --walls 'w*' --first 0.004
 exits 0
 lacks out "have no effect"
 
-# Slivers are not remeshed around inner surfaces, and no note says that they can be.
+# Slivers are not remeshed around inner surfaces unless this is requested.
 awk '$1 == "vertex" { $2 *= 12 } { print }' disk.stl >long.stl
 vanguard plan long.stl --flow internal --sheets disk
 exits 0
 says out "a surface with inner surfaces is not remeshed"
-lacks out "remesh-surface yes"
+says out "--remesh-surface yes remeshes walls and inner surfaces"
 lacks out "the surface was remeshed"
 
 # Layers on both sides of a baffle that a sheet continues.
@@ -436,7 +436,7 @@ duct cut "cut 2 2  0.3 0.3 0.8  0.4 0 0  0 0.4 0.5"
 vanguard mesh cut.stl --flow internal --sheets cut
 exits 1
 says out "self-intersection: patch 2"
-says out "let the inner surface end there with common edges"
+says out "set remesh_surface to yes, which cuts the inner surface there"
 vanguard mesh disk.stl --flow internal --sheets disk \
   --write cogsg,stl --out none
 exits 1

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+# Inner surfaces that are remeshed with the walls, and that are cut where they
+# cross walls, bodies, each other and the plane of a half model.
+needs tetgen wrap
+
+# shellcheck source=tests/cli/duct.bash
+. "$here/duct.bash"
+
+# Coarse triangles, walls and inner surfaces get the same edges.
+fin="fin 2 2  0.5 0.25 0  0 0.5 0  0 0 0.5"
+plate="plate 1 2  0.5 0.25 0.25  0.25 0 0  0 0.5 0"
+duct both "$fin" "$plate"
+remeshed="--remesh-surface yes --surface-size 0.08 --hmin 0.02"
+# shellcheck disable=SC2086
+valid both --baffles fin --sheets plate $remeshed
+vanguard mesh both.stl --flow internal --baffles fin --sheets plate \
+  --walls '*' --first 0.004 --layer-count 5 $remeshed --hmax 0.12 \
+  --write b8.ugrid --out layers
+exits 0
+says out "the inner surfaces were remeshed: "
+says out "curves along which they share edges with other surfaces: 2"
+vanguard check layers/both.b8.ugrid
+exits 0
+says out "valid"
+
+# The remeshed surface as a file has the inner surfaces once.
+# shellcheck disable=SC2086
+vanguard surface both.stl --flow internal --baffles fin --sheets plate \
+  $remeshed --write b8.ugrid --out surface
+exits 0
+lacks out "fin_back_"
+vanguard mesh surface/both.b8.ugrid --flow internal --baffles 7 --sheets 8 \
+  --hmax 0.12 --quiet --write b8.ugrid --out again
+exits 0
+vanguard check again/both.b8.ugrid
+exits 0
+says out "valid"
+
+# Parts of one patch that meet along an edge are pieces.
+awk '/solid plate/ { sub("plate", "fin") } { print }' both.stl >self.stl
+# shellcheck disable=SC2086
+valid self --baffles fin $remeshed
+vanguard check o_self/self.b8.ugrid
+exits 0
+
+# A plate that passes through the floor, a fin and both sides; without
+# remeshing it is refused, and the message says how it is cut.
+duct cross "fin 2 2  0.5 0.25 -0.2  0 0.5 0.01  0.1 0 0.7" \
+  "cut 1 3  0.3 -0.1 0.2  0.4 0.03 0.02  0 1.3 0.1"
+vanguard mesh cross.stl --flow internal --baffles fin --sheets cut
+exits 1
+says out "set remesh_surface to yes, which cuts the inner surface there"
+ways="advancing octree"
+vanguard --version --verbose
+grep -q "METIS" out && ways="$ways discrete"
+for way in $ways; do
+  for threads in 1 3; do
+    # shellcheck disable=SC2086
+    vanguard mesh cross.stl --flow internal --baffles fin --sheets cut \
+      $remeshed --hmax 0.1 --decompose $way --leaf-cells 1500 --quiet \
+      --threads $threads --write b8.ugrid --out $way$threads
+    exits 0
+    says out "inner surfaces were cut where they cross other surfaces"
+  done
+  same ${way}1/cross.b8.ugrid ${way}3/cross.b8.ugrid
+  same ${way}1/cross.sheets ${way}3/cross.sheets
+  vanguard check ${way}1/cross.b8.ugrid
+  exits 0
+  says out "valid"
+done
+
+if mpirun -n 2 true >/dev/null 2>&1; then
+  # shellcheck disable=SC2086
+  ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 mpirun -n 2 "$program" mesh \
+    cross.stl --flow internal --baffles fin --sheets cut $remeshed --hmax 0.1 \
+    --decompose octree --leaf-cells 1500 --quiet --threads 1 --write b8.ugrid \
+    --out ranks >out 2>err || fail "2 ranks: $(cat err)"
+  same octree1/cross.b8.ugrid ranks/cross.b8.ugrid
+fi
+
+# A half model: the plate passes through the plane of symmetry and the body.
+awk '/^solid (w3|fin)/ { out = 1 } !out { print }
+  /^endsolid/ { out = 0 }' cross.stl >half.stl
+# shellcheck disable=SC2086
+vanguard mesh half.stl --flow external --half y --sheets cut $remeshed \
+  --farfield-lengths 4 --write b8.ugrid --out half
+exits 0
+says out "inner surfaces were cut where they cross other surfaces or the symmetry"
+vanguard check half/half.b8.ugrid
+exits 0
+says out "valid"
+
+# A patch that is inside the body as a whole.
+duct inside "in 1 1  0.4 0.4 0.5  0.2 0 0  0 0.2 0" \
+  "out 1 1  0.4 0.9 0.5  0.2 0 0  0 0.3 0"
+# shellcheck disable=SC2086
+vanguard mesh inside.stl --flow external --sheets in,out $remeshed
+exits 1
+says err "patch 7 in, an inner surface, is not in the fluid"
