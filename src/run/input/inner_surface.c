@@ -28,7 +28,6 @@ static vg_status refuse_changes(const struct vg_boundary *b,
   const char *what = s->weld > 0                  ? "weld"
                    : s->wrap > 0                  ? "wrap"
                    : s->swap == VG_ANSWER_YES     ? "surface_swap"
-                   : b->model.cad                 ? "a CAD model"
                    : strcmp(s->mesher, "builtin") ? "mesher"
                    : vg_boundary_is_stretched(b)  ? "stretched sizes"
                                                   : NULL;
@@ -224,7 +223,6 @@ vg_status vg_boundary_take_inner(struct vg_boundary *b, struct vg_settings *s,
     "the figures of the surface do not include the %zu triangles of inner "
     "surfaces, which are checked when the surface is closed",
     b->inner.n_tri);
-  if (s->remesh != VG_ANSWER_YES) b->is_remeshed = 0;
 done:
   free(role);
   return st;

@@ -376,7 +376,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   struct vg_read_info info = {
     .cad = &cad,
     .zones = &zones,
-    .model = is_remeshed && !vg_read_has_solid_zones(r) ? &r->model : NULL,
+    .model = is_remeshed && !vg_read_keeps_triangles(r) ? &r->model : NULL,
     .mapbc = r->settings.mapbc
   };
   const char *path = r->files.surface;
