@@ -288,6 +288,22 @@ static int are_holes(const struct vg_mesh *m, const struct vg_rim *rim,
   return n_end < 2;
 }
 
+/* Open edges that face each other at the distance of a weld. */
+static vg_status refuse_gap(const struct vg_boundary *b, struct vg_error *err)
+{
+  char remedy[60];
+
+  if (vg_boundary_wants_inner(b))
+    snprintf(remedy, sizeof remedy, "weld them in the surface file");
+  else
+    snprintf(remedy, sizeof remedy, "--weld %.2g closes these gaps",
+             1.05 * b->rim_gap);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the surface is open, but its open edges face each other "
+                 "at a distance of at most %.3g: %s",
+                 b->read->files.stem, b->rim_gap, remedy);
+}
+
 vg_status vg_boundary_refuse_open(struct vg_boundary *b,
                                   struct vg_display *show, struct vg_error *err)
 {
@@ -302,17 +318,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   st = vg_domain_rims(&b->surface, &n, &rim, &why);
   if (b->rim_gap > 0) {
     free(rim);
-    if (vg_boundary_wants_inner(b))
-      return vg_fail(err, VG_ERR_GEOMETRY,
-                     "%s: the surface is open, but its open edges face each "
-                     "other at a distance of at most %.3g: weld them in the "
-                     "surface file",
-                     b->read->files.stem, b->rim_gap);
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "%s: the surface is open, but its open edges face each "
-                   "other at a distance of at most %.3g: --weld %.2g closes "
-                   "these gaps",
-                   b->read->files.stem, b->rim_gap, 1.05 * b->rim_gap);
+    return refuse_gap(b, err);
   }
   if (st == VG_ERR_GEOMETRY) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);

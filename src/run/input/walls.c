@@ -20,7 +20,8 @@
 
 #define MESHING_WALL 2 /* Class of a .d3m patch on which layers grow. */
 #define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees. */
-#define FLAT_CAP 0.1   /* S50: height of caps over the tolerance of remeshing. \
+#define FLAT_CAP                                                               \
+  0.1                  /* S50: height of caps over the tolerance of remeshing. \
                         */
 #define FLAT_BODY 1e-5 /* S50: the same over the length of the walls. */
 
@@ -373,7 +374,7 @@ static int has_slivers(const struct vg_mesh *m,
   return 0;
 }
 
-/* Longest side of the bounding box of the walls; 0 if there are none. */
+/* Longest side of the bounding box of the walls; 0 without walls. */
 static double length_of(const struct vg_mesh *m,
                         const enum vg_wall_reason *reason)
 {

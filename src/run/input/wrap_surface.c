@@ -13,7 +13,7 @@
 #include "run/settings/patch_names.h"
 
 #define LONG 60.0 /* Seconds above which a wrap is announced. */
-/* S110: of the input area, and of the bounding box. */
+/* S111: of the input area, and of the bounding box. */
 #define ROOM_INSIDE 0.05
 #define ROOM_FILL 0.7
 
