@@ -165,7 +165,7 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   apply_cure(r, &p->asked);
   vg_section_complete(&p->read, &p->asked);
   vg_mesh_log_settings(&r->mesh, &p->asked);
-  if (is_cured(r)) goto done;
+  if (r->outputs.dir) goto done;
   vg_resolve_write(&p->asked, list);
   st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);
   if (st >= 0 && !r->mesh.rank)
@@ -218,33 +218,42 @@ static vg_status share_cure(struct run *r, struct vg_error *err)
   return st;
 }
 
-/* Starts again with the remedy of the refused surface if there is only one.
- * *err: the message that names it, kept if it fails. */
-static vg_status cure_surface(struct run *r, const struct arguments *a,
-                              struct vg_error *err)
+/* Reads and closes the surface again, with the remedy or without.
+ * why: message that named the remedy */
+static vg_status begin_again(struct run *r, const struct arguments *a,
+                             const char *why, struct vg_error *err)
 {
-  struct vg_error why = VG_ERROR_INIT;
   vg_status st;
 
-  if ((st = share_cure(r, &why)) < 0) {
-    *err = why;
-    return st;
-  }
-  if (!is_cured(r)) return VG_ERR_GEOMETRY;
   vg_layer_stage_release(&r->layers);
   vg_problem_release(&r->problem);
   r->problem = (struct vg_problem)VG_PROBLEM_INIT;
-  st = read_project(r, a, &why);
-  if (st >= 0) {
-    r->problem.read.is_cured = 1;
+  VG_TRY(read_project(r, a, err));
+  r->problem.read.is_cured = is_cured(r);
+  if (is_cured(r))
     vg_note(&r->problem.notes,
-            "%s: the program does this by itself; repair "
-            "no refuses such a surface",
-            err->text);
-    st = close_surface(r, &why);
-  }
-  if (st < 0 && st != VG_ERR_GEOMETRY && st != VG_ERR_INPUT) *err = why;
+            "%s: the program does this by itself; repair no refuses such a "
+            "surface",
+            why);
+  st = close_surface(r, err);
+done:
   return st;
+}
+
+/* Starts again with the remedy of the refused surface if there is only one. If
+ * it fails, the surface is refused with its own defects. */
+static vg_status cure_surface(struct run *r, const struct arguments *a,
+                              struct vg_error *err)
+{
+  const struct vg_error why = *err;
+  vg_status st = share_cure(r, err);
+
+  if (st < 0) return st;
+  if (!is_cured(r)) return why.code;
+  st = begin_again(r, a, why.text, err);
+  if (st != VG_ERR_GEOMETRY && st != VG_ERR_INPUT) return st;
+  r->cure = (struct vg_cure){ 0, 0 };
+  return begin_again(r, a, NULL, err);
 }
 
 static struct vg_run_report report_of(const struct run *r)
