@@ -337,44 +337,6 @@ static void keeps_patches(void **unused)
 /* --- collapses ----------------------------------------------------------- */
 
 /* A point 0.3 % of an edge away from a node of each triangle of the cube. */
-/* Caps on the border between two patches join the other patch if both may
- * exchange triangles, and within the permitted height. */
-static void moves_borders_to_caps(void **unused)
-{
-  static const uint8_t all[] = { 1, 1, 1 }, one[] = { 1, 0, 1 };
-  static const struct {
-    const uint8_t *joins;
-    double distance, height;
-    int removes;
-  } row[] = { { NULL, 1e-3, 0, 0 },
-              { one, 1e-3, 0, 0 },
-              { all, 1e-3, 0, 1 },
-              { all, 0, 1e-6, 0 },
-              { all, 0, 1e-3, 1 } };
-
-  (void)unused;
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-    struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
-    struct vg_swap_report r = VG_SWAP_REPORT_INIT;
-    struct vg_mesh m = VG_MESH_INIT;
-    struct vg_error err = VG_ERROR_INIT;
-
-    make_drum(&m, 1);
-    for (size_t k = 48 * 5 + 2; k < m.n_point; k++)
-      for (int d = 0; d < 2; d++) m.point[k][d] *= 1 + 5e-5;
-    o.joins = row[i].joins;
-    o.distance = row[i].distance;
-    o.height = row[i].height;
-    o.collapse = 0;
-    assert_int_equal(vg_surface_swap(&m, &o, &r, &err), VG_OK);
-    assert_valid(&m);
-    assert_int_equal(r.n_cap[0], 4 * 48);
-    assert_int_equal(r.n_cap[1], row[i].removes ? 0 : 4 * 48);
-    assert_true(r.moved <= fmax(o.height, o.distance));
-    vg_mesh_release(&m);
-  }
-}
-
 static void removes_points_that_are_near(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -543,11 +505,9 @@ static void refuses_other_elements(void **unused)
 static void refuses_bad_options(void **unused)
 {
   static const struct vg_swap_options bad[] = {
-    { -1, 10, 1, .02, 0, NULL },       { NAN, 10, 1, .02, 0, NULL },
-    { INFINITY, 10, 1, .02, 0, NULL }, { 1e-3, 90, 1, .02, 0, NULL },
-    { 1e-3, -1, 1, .02, 0, NULL },     { 1e-3, NAN, 1, .02, 0, NULL },
-    { 1e-3, 10, 1, 1, 0, NULL },       { 1e-3, 10, 1, -.1, 0, NULL },
-    { 1e-3, 10, 1, NAN, 0, NULL },
+    { -1, 10, 1, .02 },   { NAN, 10, 1, .02 },  { INFINITY, 10, 1, .02 },
+    { 1e-3, 90, 1, .02 }, { 1e-3, -1, 1, .02 }, { 1e-3, NAN, 1, .02 },
+    { 1e-3, 10, 1, 1 },   { 1e-3, 10, 1, -.1 }, { 1e-3, 10, 1, NAN },
   };
   struct vg_mesh m = VG_MESH_INIT;
 
@@ -636,7 +596,6 @@ int main(void)
     cmocka_unit_test(keeps_ridges),
     cmocka_unit_test(swaps_caps_away),
     cmocka_unit_test(keeps_patches),
-    cmocka_unit_test(moves_borders_to_caps),
     cmocka_unit_test(removes_points_that_are_near),
     cmocka_unit_test(removes_points_along_edges),
     cmocka_unit_test(undoes_swaps_that_cause_intersections),

@@ -48,8 +48,6 @@ static void release(struct job *j)
   release_topology(j);
   free(j->same);
   free(w->tri);
-  free(w->patch);
-  free(w->n_of);
   free(w->mate);
   free(w->moved);
   free(w->changed);
@@ -117,8 +115,6 @@ static vg_status allocate(struct job *j)
   size_t n = w->n_tri;
 
   w->tri = vg_alloc(n, sizeof *w->tri);
-  w->patch = vg_alloc(n, sizeof *w->patch);
-  w->n_of = vg_alloc(j->m->n_patch, sizeof *w->n_of);
   w->mate = vg_alloc(n, 3 * sizeof *w->mate);
   w->moved = vg_alloc(n, sizeof *w->moved);
   w->changed = vg_alloc(n, 1);
@@ -128,9 +124,8 @@ static vg_status allocate(struct job *j)
   w->removed = vg_alloc(w->n_point, 1);
   w->mark = vg_calloc(w->n_point, sizeof *w->mark);
   j->same = vg_alloc(w->n_point, sizeof *j->same);
-  if (!w->tri || !w->patch || !w->n_of || !w->mate || !w->moved ||
-      !w->changed || !w->queue || !w->queued || !w->locked || !w->removed ||
-      !w->mark || !j->same)
+  if (!w->tri || !w->mate || !w->moved || !w->changed || !w->queue ||
+      !w->queued || !w->locked || !w->removed || !w->mark || !j->same)
     return vg_fail_memory(j->err, "the swaps of the surface");
   for (size_t p = 0; p < w->n_point; p++) j->same[p] = (uint32_t)p;
   return VG_OK;
@@ -201,9 +196,6 @@ static vg_status begin(struct job *j)
   vg_status st = VG_OK;
 
   memcpy(w->tri, j->m->tri, w->n_tri * sizeof *w->tri);
-  memcpy(w->patch, j->m->tri_patch, w->n_tri * sizeof *w->patch);
-  memset(w->n_of, 0, j->m->n_patch * sizeof *w->n_of);
-  for (size_t t = 0; t < w->n_tri; t++) w->n_of[w->patch[t]]++;
   memset(w->changed, 0, w->n_tri);
   memset(w->removed, 0, w->n_point);
   for (size_t t = 0; t < w->n_tri; t++) w->moved[t] = 0;
@@ -350,7 +342,6 @@ static void commit(struct job *j, struct vg_mesh *m)
   uint8_t *drop = w->changed;
 
   memcpy(m->tri, w->tri, m->n_tri * sizeof *m->tri);
-  memcpy(m->tri_patch, w->patch, m->n_tri * sizeof *m->tri_patch);
   if (!w->n_collapsed) return;
   for (size_t t = 0; t < w->n_tri; t++) drop[t] = vg_tri_removed(w, t);
   vg_mesh_drop_tri(m, drop);
@@ -386,6 +377,7 @@ vg_status vg_surface_swap(struct vg_mesh *m, const struct vg_swap_options *o,
   j.w.n_point = m->n_point;
   j.w.n_tri = m->n_tri;
   j.w.point = (const double(*)[3])m->point;
+  j.w.patch = m->tri_patch;
   VG_TRY(allocate(&j));
   if (m->n_tri) {
     memcpy(j.w.tri, m->tri, m->n_tri * sizeof *m->tri);

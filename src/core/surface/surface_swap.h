@@ -24,17 +24,10 @@ struct vg_swap_options {
   int collapse;      /* 1: also collapse short edges. */
   double short_edge; /* Edges are short below this fraction of the mean length
                         of the other edges at both ends, < 1. */
-  double height;     /* Movement that is permitted at caps in any case, for
-                        surfaces that follow a shape within a tolerance. 0:
-                        none. */
-  const uint8_t *joins; /* [n_patch] 1: a cap with its longest edge on the
-                           border to another such patch may join that patch, so
-                           that the border passes through its third corner;
-                           borrowed. NULL: none. */
 };
 #define VG_SWAP_OPTIONS_INIT                                                   \
   {                                                                            \
-    1e-3, 10, 1, 0.02, 0, NULL                                                 \
+    1e-3, 10, 1, 0.02                                                          \
   } /* S1 */
 
 /* Triangles lower than this fraction of their longest edge are caps if they
@@ -60,12 +53,12 @@ struct vg_swap_report {
 /** Swap the edges of a closed surface until it is as nearly Delaunay (its
  * smallest angles as large) as its shape permits, and collapse short edges.
  *
- * Sharp edges (between triangles of sound shape that differ by more than the
- * angle) are never swapped, and patch borders only as `joins` permits. Points
- * are removed only inside patches and along smooth patch borders. A surface
- * that is closed, manifold, oriented and free of self-intersections stays so:
- * everything that changed is subjected to the exact test of vg_surface_check,
- * and changes that intersect anything are undone.
+ * Patch borders and sharp edges (between triangles of sound shape that differ
+ * by more than the angle) are never swapped. Points are removed only inside
+ * patches and along smooth patch borders. A surface that is closed, manifold,
+ * oriented and free of self-intersections stays so: everything that changed is
+ * subjected to the exact test of vg_surface_check, and changes that intersect
+ * anything are undone.
  *
  * @param m  triangles only. Order of points, triangles and patches is kept;
  *           points and triangles removed leave no gaps. Corners of changed

@@ -156,45 +156,15 @@ static void swap(struct vg_swapper *w, uint32_t f, uint32_t g, uint32_t c,
 
 /* Add the movement to the two faces if it is within the limit. */
 static int may_move(struct vg_swapper *w, size_t s, size_t t, double by,
-                    double length, int is_cap)
+                    double length)
 {
   double sum = by + (w->moved[s] > w->moved[t] ? w->moved[s] : w->moved[t]);
 
-  if (!(sum <= w->o->distance * length) && !(is_cap && sum <= w->o->height))
-    return 0;
+  if (!(sum <= w->o->distance * length)) return 0;
   w->moved[s] = w->moved[t] = sum;
   if (sum > w->moved_max) w->moved_max = sum;
   if (sum > w->moved_relative * length) w->moved_relative = sum / length;
   return 1;
-}
-
-static int has_cap(const struct vg_tri_shape pair[2])
-{
-  return vg_tri_shape_cap(&pair[0]) || vg_tri_shape_cap(&pair[1]);
-}
-
-/* May the edge between two triangles of different patches be swapped? Only if
- * it is the longest edge of a cap, which then joins the patch of the larger
- * triangle. */
-static int may_join(const struct vg_swapper *w, uint32_t f,
-                    const struct vg_tri_shape pair[2])
-{
-  const uint32_t g = w->mate[f];
-  const int small = pair[0].area > pair[1].area;
-  const uint32_t cap = small ? g : f;
-
-  return w->o->joins && w->o->joins[w->patch[f / 3]] &&
-         w->o->joins[w->patch[g / 3]] && vg_tri_shape_cap(&pair[small]) &&
-         !(vg_distance2(at(w, vg_swap_from(w, f)), at(w, vg_swap_from(w, g))) <
-           pair[small].longest2) &&
-         w->n_of[w->patch[cap / 3]] > 1;
-}
-
-static void join(struct vg_swapper *w, uint32_t from, uint32_t to)
-{
-  w->n_of[w->patch[from / 3]]--;
-  w->n_of[w->patch[to / 3]]++;
-  w->patch[from / 3] = w->patch[to / 3];
 }
 
 /* Reference length for the permitted movement of a pair. A cap cannot move by
@@ -202,7 +172,8 @@ static void join(struct vg_swapper *w, uint32_t from, uint32_t to)
  * part of its width if their length were used. */
 static double length_of(const struct vg_tri_shape pair[2])
 {
-  if (has_cap(pair)) return sqrt(fmin(pair[0].longest2, pair[1].longest2));
+  if (vg_tri_shape_cap(&pair[0]) || vg_tri_shape_cap(&pair[1]))
+    return sqrt(fmin(pair[0].longest2, pair[1].longest2));
   return GOOD * sqrt(fmin(pair[0].shortest2, pair[1].shortest2));
 }
 
@@ -212,16 +183,16 @@ static void try_swap(struct vg_swapper *w, uint32_t f)
   uint32_t a = vg_swap_from(w, f), b = vg_swap_from(w, g);
   uint32_t hc = vg_half_prev(f), hd = vg_half_prev(g);
   uint32_t c = vg_swap_from(w, hc), d = vg_swap_from(w, hd);
-  const int is_border = w->patch[f / 3] != w->patch[g / 3];
   struct vg_tri_shape before[2], after[2];
 
-  if ((is_border && !w->o->joins) || c == d || w->locked[a] || w->locked[b] ||
-      w->locked[c] || w->locked[d])
+  if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a] ||
+      w->locked[b] || w->locked[c] || w->locked[d])
     return;
   vg_tri_shape_of(at(w, a), at(w, b), at(w, c), &before[0]);
   vg_tri_shape_of(at(w, b), at(w, a), at(w, d), &before[1]);
-  if (w->caps_only && !has_cap(before)) return;
-  if (is_border && !may_join(w, f, before)) return;
+  if (w->caps_only && !vg_tri_shape_cap(&before[0]) &&
+      !vg_tri_shape_cap(&before[1]))
+    return;
   vg_tri_shape_of(at(w, a), at(w, d), at(w, c), &after[0]);
   vg_tri_shape_of(at(w, d), at(w, b), at(w, c), &after[1]);
   if (!(fmin(after[0].sine2, after[1].sine2) >
@@ -230,10 +201,8 @@ static void try_swap(struct vg_swapper *w, uint32_t f)
     return;
   if (!may_move(w, f / 3, g / 3,
                 distance(at(w, a), at(w, b), at(w, c), at(w, d)),
-                length_of(before), has_cap(before)))
+                length_of(before)))
     return;
-  if (is_border && before[0].area > before[1].area) join(w, g, f);
-  else if (is_border) join(w, f, g);
   w->changed[f / 3] = w->changed[g / 3] = 1;
   w->n_swapped++;
   swap(w, f, g, c, d);

@@ -17,18 +17,17 @@ struct vg_swapper {
   double cosine; /* Cosine of options.angle. */
   size_t n_point, n_tri;
   const double (*point)[3];
-  uint32_t *patch;    /* [n_tri] Patch of each triangle. */
-  size_t *n_of;       /* [n_patch] Number of triangles of each patch. */
-  uint32_t (*tri)[3]; /* [n_tri] Removed triangles have three equal nodes. */
-  uint32_t *mate;     /* [3 n_tri] Opposite half-edges. */
-  double *moved;      /* [n_tri] Upper bound of the distance from the
-                         original surface. */
-  uint8_t *changed;   /* [n_tri] 1: changed. */
-  uint8_t *locked;    /* [n_point] 1: the faces at the point must stay. */
-  uint8_t *removed;   /* [n_point] 1: removed. */
-  uint32_t *queue;    /* [3 n_tri] Circular queue of half-edges to
-                         examine. */
-  uint8_t *queued;    /* [3 n_tri] 1: in the queue. */
+  const uint32_t *patch; /* [n_tri] Patch of each triangle. */
+  uint32_t (*tri)[3];    /* [n_tri] Removed triangles have three equal nodes. */
+  uint32_t *mate;        /* [3 n_tri] Opposite half-edges. */
+  double *moved;         /* [n_tri] Upper bound of the distance from the
+                            original surface. */
+  uint8_t *changed;      /* [n_tri] 1: changed. */
+  uint8_t *locked;       /* [n_point] 1: the faces at the point must stay. */
+  uint8_t *removed;      /* [n_point] 1: removed. */
+  uint32_t *queue;       /* [3 n_tri] Circular queue of half-edges to
+                            examine. */
+  uint8_t *queued;       /* [3 n_tri] 1: in the queue. */
   size_t head, n_queue;
   int caps_only;  /* 1: skip pairs without a cap. */
   uint32_t *mark; /* [n_point] Last `turn` in which the point was a neighbour of

@@ -104,8 +104,8 @@ static int normal_fits(const struct vg_swapper *w, uint32_t i,
 }
 
 /* Movement of the surface if the start of h is removed; INFINITY if it must
- * stay. limit: largest movement */
-static double price(struct vg_swapper *w, uint32_t h, double limit)
+ * stay. */
+static double price(struct vg_swapper *w, uint32_t h, double length)
 {
   const double *a = from(w, h), *b = from(w, w->mate[h]);
   struct ring r, other;
@@ -130,7 +130,7 @@ static double price(struct vg_swapper *w, uint32_t h, double limit)
     by = fmax(by, fabs(dot_of(b, a, now.normal)) / now.area);
   }
   if (!(worst_now >= worst) || w->locked[vg_swap_from(w, h)]) return INFINITY;
-  return by + most <= limit ? by + most : INFINITY;
+  return by + most <= w->o->distance * length ? by + most : INFINITY;
 }
 
 /* Remove faces f and g at the half-edge; the other faces at its start use its
@@ -158,17 +158,13 @@ static void collapse(struct vg_swapper *w, uint32_t f, double moved)
     vg_swap_push(w, vg_half_prev(r.half[i]));
   }
   for (int k = 0; k < 3; k++) w->tri[f / 3][k] = w->tri[g / 3][k] = b;
-  w->n_of[w->patch[f / 3]]--;
-  w->n_of[w->patch[g / 3]]--;
   w->removed[a] = 1;
   w->n_collapsed++;
 }
 
-static int try_collapse(struct vg_swapper *w, uint32_t h, double length,
-                        int is_cap)
+static int try_collapse(struct vg_swapper *w, uint32_t h, double length)
 {
-  double limit = fmax(w->o->distance * length, is_cap ? w->o->height : 0);
-  double here = price(w, h, limit), there = price(w, w->mate[h], limit);
+  double here = price(w, h, length), there = price(w, w->mate[h], length);
   double by = fmin(here, there);
 
   if (!(by < INFINITY)) return 0;
@@ -216,15 +212,13 @@ vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     uint32_t a = vg_swap_from(w, h), b;
     double own, mean;
-    int is_cap;
 
     if (vg_tri_removed(w, h / 3) || h > w->mate[h]) continue;
     b = vg_swap_from(w, w->mate[h]);
     own = sqrt(vg_distance2(w->point[a], w->point[b]));
     mean = (sum[a] + sum[b] - 2 * own) / (double)(n[a] + n[b] - 2);
-    is_cap = at_cap(w, h) || at_cap(w, w->mate[h]);
-    if (own < w->o->short_edge * mean || is_cap)
-      *n_removed += (size_t)try_collapse(w, h, mean, is_cap);
+    if (own < w->o->short_edge * mean || at_cap(w, h) || at_cap(w, w->mate[h]))
+      *n_removed += (size_t)try_collapse(w, h, mean);
   }
   free(sum);
   free(n);

@@ -20,10 +20,6 @@
 
 #define MESHING_WALL 2 /* Class of a .d3m patch on which layers grow. */
 #define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees. */
-#define FLAT_CAP                                                               \
-  0.1                  /* S50: height of caps over the tolerance of remeshing. \
-                        */
-#define FLAT_BODY 1e-5 /* S50: the same over the length of the walls. */
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
@@ -374,53 +370,12 @@ static int has_slivers(const struct vg_mesh *m,
   return 0;
 }
 
-/* Longest side of the bounding box of the walls; 0 without walls. */
-static double length_of(const struct vg_mesh *m,
-                        const enum vg_wall_reason *reason)
-{
-  double lo[3] = { INFINITY, INFINITY, INFINITY }, length = 0;
-  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-
-  for (size_t i = 0; reason && i < 3 * m->n_tri; i++)
-    if (reason[m->tri_patch[i / 3]] != VG_WALL_NOT)
-      for (int k = 0; k < 3; k++) {
-        const double x = m->point[m->tri[i / 3][i % 3]][k];
-
-        lo[k] = fmin(lo[k], x);
-        hi[k] = fmax(hi[k], x);
-      }
-  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
-  return length;
-}
-
-/* Patches between which caps may move a border. Other patches may have to stay
- * plane, and `hard` borders stay in place. *joins: NULL if no layers grow */
-static vg_status patches_that_join(const struct vg_boundary *b,
-                                   const enum vg_wall_reason *reason,
-                                   uint8_t **joins, struct vg_error *err)
-{
-  const struct vg_mesh *m = &b->surface;
-
-  if (!reason) return VG_OK;
-  *joins = vg_calloc(m->n_patch, 1);
-  if (!*joins) return vg_fail_memory(err, "the patches");
-  for (size_t i = 0; i < m->n_patch; i++)
-    (*joins)[i] = reason[i] != VG_WALL_NOT && reason[i] != VG_WALL_EXTENDED;
-  for (size_t i = 0; i < b->n_row; i++) {
-    const size_t at = vg_mesh_find_patch(m, b->row[i].id);
-
-    if (b->row[i].hard && at != SIZE_MAX) (*joins)[at] = 0;
-  }
-  return VG_OK;
-}
-
 vg_status vg_walls_swap(struct vg_boundary *b,
                         const enum vg_wall_reason *reason, struct vg_error *err)
 {
-  struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
+  const struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
   struct vg_swap_report r = VG_SWAP_REPORT_INIT;
   const int answer = b->read->settings.swap;
-  uint8_t *joins = NULL;
   vg_status st;
 
   /* Triangles in a stretched metric may have small angles. */
@@ -430,11 +385,8 @@ vg_status vg_walls_swap(struct vg_boundary *b,
                                                has_slivers(&b->surface, reason)
                                            : answer == VG_ANSWER_YES;
   if (!b->is_swapped) return VG_OK;
-  o.height = b->remeshing.is_done ? FLAT_CAP * b->remeshing.report.tolerance
-                                  : FLAT_BODY * length_of(&b->surface, reason);
-  VG_TRY(patches_that_join(b, reason, &joins, err));
-  o.joins = joins;
-  VG_TRY(vg_surface_swap(&b->surface, &o, &r, err));
+  st = vg_surface_swap(&b->surface, &o, &r, err);
+  if (st < 0) return st;
   vg_note(b->notes,
           "slivers of the surface: caps reduced from %zu to %zu, needles "
           "from %zu to %zu, by %zu swaps and %zu collapses of edges that "
@@ -442,7 +394,5 @@ vg_status vg_walls_swap(struct vg_boundary *b,
           "unchanged)",
           r.n_cap[0], r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
           r.n_collapsed, r.moved);
-done:
-  free(joins);
   return st;
 }
