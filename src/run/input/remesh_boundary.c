@@ -15,14 +15,12 @@
 #include "run/input/share.h"
 #include "run/settings/plan_options.h"
 
-#define SLIVER2 0.03015369         /* S49: (sin 10 degrees)^2 */
-#define CAP (-0.86602540378443865) /* S49: cosine of 150 degrees */
-#define NEEDLE 5.0                 /* S56: degrees */
+#define SLIVER2 0.03015369 /* S49: (sin 10 degrees)^2 */
+#define NEEDLE 5.0         /* S56: degrees */
 /* Share of the triangles; a larger share of needles is repaired. */
 #define MANY 1e-3
 /* Share of the triangles; above it a tessellation is remeshed. */
-#define MOST 0.2       /* S49 */
-#define MANY_CAPS 0.01 /* S49: not from a mesh generator */
+#define MOST 0.2 /* S49 */
 /* Largest relative difference between areas of a patch and of its CAD faces. */
 #define AREA_NEAR 0.05
 
@@ -49,37 +47,19 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t v[3])
   return vg_dot(n, n) * least <= SLIVER2 * l[0] * l[1] * l[2];
 }
 
-/* Whether an angle is above 150 degrees. */
-static int is_cap(const struct vg_mesh *m, const uint32_t v[3])
-{
-  double a[3], b[3];
-
-  for (int k = 0; k < 3; k++) {
-    vg_sub(m->point[v[(k + 1) % 3]], m->point[v[k]], a);
-    vg_sub(m->point[v[(k + 2) % 3]], m->point[v[k]], b);
-    if (vg_dot(a, b) < CAP * sqrt(vg_dot(a, a) * vg_dot(b, b))) return 1;
-  }
-  return 0;
-}
-
-/* Share of the triangles that satisfy a condition. */
-static double share_of(const struct vg_mesh *m,
-                       int (*is)(const struct vg_mesh *, const uint32_t[3]))
+/* Share of the triangles with an angle below 10 degrees. */
+static double sliver_share(const struct vg_mesh *m)
 {
   size_t n = 0;
 
-  for (size_t t = 0; t < m->n_tri; t++) n += (size_t)is(m, m->tri[t]);
+  for (size_t t = 0; t < m->n_tri; t++) n += (size_t)is_sliver(m, m->tri[t]);
   return m->n_tri ? (double)n / (double)m->n_tri : 0;
 }
 
-/* Do triangles approximate a shape, so that they are not meant for meshing? In
- * formats of mesh generators, stretched triangles may be intended, but caps
- * are not. */
-static int is_tessellation(const struct vg_read *r, const struct vg_mesh *m)
+static int is_tessellation(const struct vg_read *r)
 {
-  return *r->files.surface && share_of(m, is_sliver) > MOST &&
-         (vg_format_is_tessellation(r->files.surface) ||
-          share_of(m, is_cap) > MANY_CAPS);
+  return !*r->files.front && !(r->settings.wrap > 0) && !r->heights.n &&
+       *r->files.surface && vg_format_is_tessellation(r->files.surface);
 }
 
 int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
@@ -87,15 +67,15 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
   if (r->is_section) return 0;
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
-  if (*r->files.front || r->settings.wrap > 0) return 0;
-  if (vg_format_is_cad(r->files.surface)) return 1;
-  return !r->heights.n && !vg_read_keeps_triangles(r) &&
-         is_tessellation(r, surface);
+  if (is_tessellation(r))
+    return !vg_read_keeps_triangles(r) && sliver_share(surface) > MOST;
+  return !*r->files.front && vg_format_is_cad(r->files.surface) &&
+         !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)
 {
-  const double share = share_of(&b->surface, is_sliver);
+  const double share = sliver_share(&b->surface);
   const char *keeps = vg_read_keeps_triangles(b->read);
 
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;

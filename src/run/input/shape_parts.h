@@ -114,10 +114,8 @@ int vg_boundary_suggest_inner(const struct vg_boundary *b, char *text,
  * --------------------------- */
 
 /** 1 if this surface is remeshed: `auto` remeshes CAD surfaces, and
- * surfaces of which more than a fifth of the triangles are slivers, unless
- * their triangles must stay (vg_read_keeps_triangles). In formats of mesh
- * generators one triangle in a hundred must have an angle above 150 degrees,
- * too. */
+ * tessellations (STL, OBJ, Cart3D) of which more than a fifth of the triangles
+ * are slivers, unless their triangles must stay (vg_read_keeps_triangles). */
 int vg_read_is_remeshed(const struct vg_read *read,
                         const struct vg_mesh *surface);
 

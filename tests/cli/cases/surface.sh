@@ -259,14 +259,3 @@ vanguard surface -q domain.stl --surface-tolerance 0.001
 exits 0
 says out "tolerance on the outer boundary, where the target edge length exceeds"
 says out "tolerance 0.001, or 0.05 of the edge length where edges of the outer"
-
-# In a format of mesh generators, needles stay unless there are caps, too.
-vanguard convert bar.obj needles.b8.ugrid
-vanguard check -q needles.b8.ugrid
-exits 0
-says out "angle below 10 degrees, and so will the cells on them"
-awk '$1 == "v" { $2 += 3 * ($3 + $4) } { print }' bar.obj >leaning.obj
-vanguard convert leaning.obj caps.b8.ugrid
-vanguard check -q caps.b8.ugrid
-exits 0
-says out "the surface is treated as a tessellation and is remeshed"

@@ -90,3 +90,22 @@ for name in hole wall; do
   exits 0
   same by_itself/$name.b8.ugrid by_ranks/$name.b8.ugrid
 done
+
+# A wrap that may be a room around bodies is left to the user: houses that cross
+# the floor of a tunnel, one with a sheet.
+box() { # X0 Y0 Z0 X1 Y1 Z1 POINTS_BEFORE
+  echo "$1 $2 $3 $4 $5 $6 $7" | awk '{
+    for (i = 0; i < 8; i++)
+      print "v", (i % 2 ? $4 : $1), (int(i / 2) % 2 ? $5 : $2), (i > 3 ? $6 : $3)
+    split("1 3 4 2 5 6 8 7 1 2 6 5 3 7 8 4 1 5 7 3 2 4 8 6", f, " ")
+    for (i = 1; i < 24; i += 4) {
+      print "f", $7 + f[i], $7 + f[i + 1], $7 + f[i + 2]
+      print "f", $7 + f[i], $7 + f[i + 2], $7 + f[i + 3] } }'
+}
+{ box 0 0 0 10 4 4 0; box 2 1 -0.2 3 3 1 8; box 4 1 -0.2 5 3 1 16
+  box 6 1 -0.2 7 3 1 24; echo "v 2.5 1 1.5"; echo "f 13 14 33"; } >room.obj
+vanguard mesh -q -p room.obj --out room
+exits 1
+says err "puts a closed surface around it"
+exists room/room.defects.vtu
+absent room/room.b8.ugrid
