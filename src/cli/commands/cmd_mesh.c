@@ -41,6 +41,7 @@ struct run {
   struct vg_layer_stage layers;
   struct vg_run mesh;
   struct vg_run_times time;
+  struct vg_cure cure; /* Settings that the program chose. */
 };
 
 /* Options that are not settings: they do not change the mesh. */
@@ -138,6 +139,17 @@ static error_t option(int key, char *arg, struct argp_state *state)
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
+static void apply_cure(const struct run *r, struct vg_settings *s)
+{
+  if (r->cure.wrap > 0) s->wrap = r->cure.wrap;
+  if (r->cure.close_holes) s->close_holes = 1;
+}
+
+static int is_cured(const struct run *r)
+{
+  return r->cure.wrap > 0 || r->cure.close_holes;
+}
+
 /* Find the files and read the settings, on each rank. */
 static vg_status read_settings(struct run *r, const struct arguments *a,
                                struct vg_error *err)
@@ -150,8 +162,10 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_problem_open(p, a->project, a->deck, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->asked, err));
+  apply_cure(r, &p->asked);
   vg_section_complete(&p->read, &p->asked);
   vg_mesh_log_settings(&r->mesh, &p->asked);
+  if (r->outputs.dir) goto done;
   vg_resolve_write(&p->asked, list);
   st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);
   if (st >= 0 && !r->mesh.rank)
@@ -188,6 +202,58 @@ static vg_status close_surface(struct run *r, struct vg_error *err)
   st = vg_comm_agree(m->comm, st, err);
 done:
   return st;
+}
+
+/* The remedy of the refused surface: rank 0 and the first rank of each node
+ * found it. */
+static vg_status share_cure(struct run *r, struct vg_error *err)
+{
+  const struct vg_cure *c = &r->problem.boundary.cure;
+  double v[2] = { c->wrap, c->close_holes };
+  vg_status st = vg_comm_max(r->mesh.comm, 2, v, err);
+
+  if (!r->problem.asked.repair) return st;
+  r->cure.wrap = v[0];
+  r->cure.close_holes = !(v[0] > 0) && v[1] > 0;
+  return st;
+}
+
+/* Reads and closes the surface again, with the remedy or without.
+ * why: message that named the remedy */
+static vg_status begin_again(struct run *r, const struct arguments *a,
+                             const char *why, struct vg_error *err)
+{
+  vg_status st;
+
+  vg_layer_stage_release(&r->layers);
+  vg_problem_release(&r->problem);
+  r->problem = (struct vg_problem)VG_PROBLEM_INIT;
+  VG_TRY(read_project(r, a, err));
+  r->problem.read.is_cured = is_cured(r);
+  if (is_cured(r))
+    vg_note(&r->problem.notes,
+            "%s: the program does this by itself; repair no refuses such a "
+            "surface",
+            why);
+  st = close_surface(r, err);
+done:
+  return st;
+}
+
+/* Starts again with the remedy of the refused surface if there is only one. If
+ * it fails, the surface is refused with its own defects. */
+static vg_status cure_surface(struct run *r, const struct arguments *a,
+                              struct vg_error *err)
+{
+  const struct vg_error why = *err;
+  vg_status st = share_cure(r, err);
+
+  if (st < 0) return st;
+  if (!is_cured(r)) return why.code;
+  st = begin_again(r, a, why.text, err);
+  if (st != VG_ERR_GEOMETRY && st != VG_ERR_INPUT) return st;
+  r->cure = (struct vg_cure){ 0, 0 };
+  return begin_again(r, a, NULL, err);
 }
 
 static struct vg_run_report report_of(const struct run *r)
@@ -390,7 +456,9 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   r->mesh.options = a->run;
   VG_TRY(vg_run_resumable(m, err));
   VG_TRY(read_project(r, a, err));
-  VG_TRY(close_surface(r, err));
+  st = close_surface(r, err);
+  if (st == VG_ERR_GEOMETRY) st = cure_surface(r, a, err);
+  if (st < 0) goto done;
   VG_TRY(vg_run_mesh(m, p, &r->layers, &r->show, err));
   front = vg_layer_stage_front(&r->layers, &p->boundary.surface);
   vg_effects_note(&m->effects, &front, &p->resolved.settings, &p->notes);

@@ -394,8 +394,14 @@ static struct vg_rim measure_rim(const struct holes *h, uint32_t k)
   double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
   struct vg_rim r = { .axis = -1 };
   uint32_t p = h->rim[k].first;
+  const double *first = h->m.point[p];
+  double u[3], v[3], n[3];
 
   do {
+    vg_sub(h->m.point[p], first, u);
+    vg_sub(h->m.point[h->next[p]], first, v);
+    vg_cross(u, v, n);
+    for (int d = 0; d < 3; d++) r.normal[d] += n[d];
     for (int d = 0; d < 3; d++) {
       lo[d] = fmin(lo[d], h->m.point[p][d]);
       hi[d] = fmax(hi[d], h->m.point[p][d]);
@@ -408,6 +414,7 @@ static struct vg_rim measure_rim(const struct holes *h, uint32_t k)
     r.width = fmax(r.width, hi[d] - lo[d]);
     if (hi[d] - lo[d] <= h->tolerance) r.axis = d;
   }
+  vg_unit(r.normal);
   return r;
 }
 

@@ -151,6 +151,7 @@ struct vg_rim {
   double centre[3]; /* Centre of its bounding box. */
   double width;     /* Longest side of its bounding box. */
   int axis;         /* Coordinate axis across which it is flat; -1: none. */
+  double normal[3]; /* Unit normal of its plane; 0 if it has none. */
 };
 
 /** Find the rims of a surface, in the order of their first points. The caller

@@ -18,6 +18,10 @@
 #define FARFIELD_TRIANGLES 1e8
 /* Distance from a plane, relative to the size of the surface. */
 #define PLANE 1e-9
+/* S110: holes of a skin, and ends of a duct, over length and over the width. */
+#define HOLE 0.1
+#define END 0.1
+#define MANY_RIMS 100 /* Above it, all points are not compared with each. */
 #define SHOWN_RIMS 3
 /* S68: finest octree cells of the sizing field for a farfield along the Mach
  * cone, relative to those of the field of the cells. */
@@ -259,6 +263,52 @@ static void name_caps(const struct caps *works, size_t n, char *text,
              list);
 }
 
+/* Whether the surface lies on one side of the rim, as at the end of a duct. */
+static int is_end(const struct vg_mesh *m, const struct vg_rim *r)
+{
+  double d[3], lo = 0, hi = 0;
+
+  for (size_t i = 0; i < m->n_point; i++) {
+    vg_sub(m->point[i], r->centre, d);
+    lo = fmin(lo, vg_dot(d, r->normal));
+    hi = fmax(hi, vg_dot(d, r->normal));
+  }
+  return fmin(-lo, hi) <= END * r->width;
+}
+
+/* Whether the rims are nothing but holes in the skin of a body: they are
+ * narrow, and no two of them can be the ends of a duct. */
+static int are_holes(const struct vg_mesh *m, const struct vg_rim *rim,
+                     size_t n)
+{
+  double lo[3], hi[3], length = 0;
+  int n_end = 0;
+
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
+  for (size_t i = 0; i < n; i++)
+    if (rim[i].width > HOLE * length) return 0;
+  if (n > MANY_RIMS) return 0;
+  for (size_t i = 0; i < n && n_end < 2; i++) n_end += is_end(m, &rim[i]);
+  return n_end < 2;
+}
+
+/* Open edges that face each other at the distance of a weld. */
+static vg_status refuse_gap(const struct vg_boundary *b, struct vg_error *err)
+{
+  char remedy[60];
+
+  if (vg_boundary_wants_inner(b))
+    snprintf(remedy, sizeof remedy, "weld them in the surface file");
+  else
+    snprintf(remedy, sizeof remedy, "--weld %.2g closes these gaps",
+             1.05 * b->rim_gap);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the surface is open, but its open edges face each other "
+                 "at a distance of at most %.3g: %s",
+                 b->read->files.stem, b->rim_gap, remedy);
+}
+
 vg_status vg_boundary_refuse_open(struct vg_boundary *b,
                                   struct vg_display *show, struct vg_error *err)
 {
@@ -273,17 +323,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   st = vg_domain_rims(&b->surface, &n, &rim, &why);
   if (b->rim_gap > 0) {
     free(rim);
-    if (vg_boundary_wants_inner(b))
-      return vg_fail(err, VG_ERR_GEOMETRY,
-                     "%s: the surface is open, but its open edges face each "
-                     "other at a distance of at most %.3g: weld them in the "
-                     "surface file",
-                     b->read->files.stem, b->rim_gap);
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "%s: the surface is open, but its open edges face each "
-                   "other at a distance of at most %.3g: --weld %.2g closes "
-                   "these gaps",
-                   b->read->files.stem, b->rim_gap, 1.05 * b->rim_gap);
+    return refuse_gap(b, err);
   }
   if (st == VG_ERR_GEOMETRY) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
@@ -307,6 +347,7 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
   if (!works.any && !works.internal && !works.external) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
     if (vg_boundary_suggest_inner(b, remedy, sizeof remedy)) *half = 0;
+    if (*half) b->cure.wrap = 0;
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: the surface is open: %zu rim%s (%s). Caps on the rims "
                  "(--close-holes) would intersect or overlap the surface%s%s%s",
@@ -316,6 +357,8 @@ vg_status vg_boundary_refuse_open(struct vg_boundary *b,
     return st;
   }
   name_caps(&works, n, remedy, sizeof remedy);
+  b->cure.close_holes = works.any && !*half && !*taken &&
+                        are_holes(&b->surface, rim, n);
   st = vg_fail(err, VG_ERR_GEOMETRY,
                "%s: the surface is open: %zu rim%s (%s). %s%s%s",
                b->read->files.stem, n, n > 1 ? "s" : "", list, remedy, half,

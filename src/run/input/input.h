@@ -132,6 +132,8 @@ struct vg_patch_areas {
  * which the boundary takes over. */
 struct vg_read {
   struct vg_input_files files;
+  int is_cured;                    /* The program chose the setting wrap or
+                                      close_holes. */
   struct vg_settings settings;     /* Requested settings, with sources and
                                       layers from files, and with numbers in
                                       place of the names of patches. */
@@ -168,6 +170,13 @@ enum vg_remedy {
   VG_REMEDY_NOW,   /* They do. */
   VG_REMEDY_LATER, /* They do not. */
   VG_REMEDY_ASKED  /* They do not, but one would have. */
+};
+
+/* The settings that remedy a surface which is not valid, if no other reading of
+ * the surface is plausible. */
+struct vg_cure {
+  double wrap;     /* > 0: the setting wrap. */
+  int close_holes; /* 1: the setting close_holes. */
 };
 
 struct vg_boundary {
@@ -207,6 +216,7 @@ struct vg_boundary {
   struct vg_domain_report domain;
   int is_swapped; /* Edges of the surface were swapped. */
   enum vg_remedy remedy;
+  struct vg_cure cure; /* Of the refused surface. */
 };
 
 /** The data of a run up to its mesh. All commands and the library create them

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Wraps the surface of a problem. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "core/geometry/volume.h"
 #include "core/wrap/wrap.h"
 #include "run/common/text.h"
 #include "run/input/shape_parts.h"
@@ -11,6 +13,9 @@
 #include "run/settings/patch_names.h"
 
 #define LONG 60.0 /* Seconds above which a wrap is announced. */
+/* S111: of the input area, and of the bounding box. */
+#define ROOM_INSIDE 0.05
+#define ROOM_FILL 0.7
 
 /* asked: [n_patch] 1: `walls` or the table layers names the patch. */
 static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
@@ -45,6 +50,28 @@ static vg_status check_empty(const struct vg_boundary *b, const uint8_t *empty,
                      "from the list, or reduce the size",
                      (int)b->surface.patch[i].id);
   return VG_OK;
+}
+
+/* A wrap that the program chose may be the outside of a room around bodies. */
+static vg_status check_room(const struct vg_boundary *b,
+                            const struct vg_wrap_report *r,
+                            struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface;
+  double lo[3], hi[3], volume, box = 1;
+
+  if (!b->read->is_cured || r->n_kept || !(r->inside > ROOM_INSIDE))
+    return VG_OK;
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++) box *= hi[k] - lo[k];
+  volume = fabs(vg_enclosed6(m->n_tri, (const uint32_t(*)[3])m->tri,
+                             (const double(*)[3])m->point, lo)) /
+           6;
+  if (!(volume > ROOM_FILL * box)) return VG_OK;
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%.0f %% of the surface are inside the wrap, which fills %.0f "
+                 "%% of its bounding box: it may be a room around bodies",
+                 100 * r->inside, 100 * volume / box);
 }
 
 static void note_wrap(struct vg_boundary *b, const struct vg_wrap_report *r)
@@ -135,11 +162,21 @@ vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
   vg_display_update(show, "wrap", 0, 0);
   VG_TRY(vg_wrap(&b->surface, &o, &r, err));
   VG_TRY(check_empty(b, empty, asked, err));
+  VG_TRY(check_room(b, &r, err));
   note_wrap(b, &r);
 done:
   free(empty);
   free(asked);
   return st;
+}
+
+/* The size that a user takes from the message. */
+static double as_printed(double wrap)
+{
+  char text[32];
+
+  snprintf(text, sizeof text, "%.2g", wrap);
+  return strtod(text, NULL);
 }
 
 void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
@@ -181,4 +218,5 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
              wrap, reason == VG_WRAP_HOLES ? " and bridges its holes" : "");
+  if (reason == VG_WRAP_FITS) b->cure.wrap = as_printed(wrap);
 }
