@@ -150,17 +150,38 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
   return VG_OK;
 }
 
-/* A patch without faces cannot have layers, even if they are requested. */
+/* Does the list contain a patch only within a pattern or a range? */
+static int is_among(const char *list, const struct vg_patch *p)
+{
+  struct vg_patch_item item;
+  int is = 0;
+
+  while (vg_patch_list_next(&list, &item)) {
+    const int one = *item.name ? !strpbrk(item.name, "*?")
+                               : item.from == item.to;
+    const int has = *item.name ? vg_patch_name_matches(item.name, p->name)
+                               : item.from <= p->id && p->id <= item.to;
+
+    if (has && one) return 0;
+    is |= has;
+  }
+  return is;
+}
+
+/* A patch without faces cannot have layers, even if they are requested. One of
+ * many that a pattern names is left out, such as the cap of a half model. */
 static vg_status refuse_empty(const struct vg_boundary *b,
                               const uint8_t *has_faces,
-                              const enum vg_wall_reason *reason,
-                              struct vg_error *err)
+                              enum vg_wall_reason *reason, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface;
   const int is_cut = vg_zones_lack_cells(&b->read->settings);
 
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (reason[i] == VG_WALL_SETTING && !has_faces[i])
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (reason[i] != VG_WALL_SETTING || has_faces[i]) continue;
+    if (is_among(b->read->settings.layer.walls, &m->patch[i]))
+      reason[i] = VG_WALL_NOT;
+    else
       return vg_fail(err, VG_ERR_INPUT,
                      "layers are requested on patch %d%s%s, but none of its "
                      "faces is left (%s removed them); name only the other "
@@ -171,6 +192,7 @@ static vg_status refuse_empty(const struct vg_boundary *b,
                             : "the repair or the wrap",
                      is_cut ? ", or mesh the zone (mesh yes in the table zones)"
                             : "");
+  }
   return VG_OK;
 }
 
