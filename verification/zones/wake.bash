@@ -10,19 +10,18 @@ wake() {
     return
   fi
   gunzip -c "$file" >wing.stp || return
-  "$vanguard" surface -q wing.stp --half y --hmin 4 --hmax 20 --write stl \
-    --out surface >/dev/null || bad "vanguard surface"
-  python3 "$here/wake.py" surface/wing.stl wake.stl --angle 3.09 --length 400 ||
-    { bad "wake.py"; return; }
-  "$vanguard" mesh -q wake.stl --half y --sheets wake --walls wing,wake \
-    --first 0.02 --layer-count 12 --cells mixed --farfield-lengths 10 \
-    --write foam,b8.ugrid --out mesh >mesh.log || { bad "vanguard mesh"; return; }
+  printf 'Wake\n\nwakes\npatch  kind   length  alpha\n*      sheet  0.5     3.09\n' \
+    >wake.deck
+  "$vanguard" mesh -q wing.stp --deck wake.deck --half y --hmin 4 \
+    --surface-size 20 --walls '*' --first 0.02 --layer-count 12 --cells mixed \
+    --farfield-lengths 10 --write foam,b8.ugrid --out mesh >mesh.log ||
+    { bad "vanguard mesh"; return; }
   # Shares of the faces with all layers.
-  awk '$2 ~ /^(wing|wake|wake_back)$/ && NF == 9 { print "  full layers on", $2,
+  awk '$2 ~ /^wake1(_back)?$/ && NF == 9 { print "  full layers on", $2,
          $4, "%"; n++; low += $4 < 95 }
-       END { exit !(n == 3 && !low) }' mesh.log || bad "the layers"
-  "$vanguard" check mesh/wake.b8.ugrid >check.log || bad "vanguard check"
-  awk '$6 == "wake" { print "  triangles of the wake:", $2; n = $2 == $3 && $2 == $4 }
+       END { exit !(n == 2 && !low) }' mesh.log || bad "the layers"
+  "$vanguard" check mesh/wing.b8.ugrid >check.log || bad "vanguard check"
+  awk '$6 == "wake1" { print "  triangles of the wake:", $2; n = $2 == $3 && $2 == $4 }
        END { exit !n }' check.log || bad "the wake"
-  cd mesh/wake.openfoam && sound
+  cd mesh/wing.openfoam && sound
 }

@@ -2,6 +2,7 @@
 /* Cuts inner surfaces that cross other surfaces. The common curves become edges
  * of both, and parts outside the fluid are removed. */
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,6 +62,19 @@ static int reaches_beyond(const struct vg_boundary *b,
     if (h->is_above ? d < 0 : d > 0) return 1;
   }
   return 0;
+}
+
+/* Points of inner surfaces next to the symmetry plane move into it, as those of
+ * the walls do: a border along the plane would be cut where it crosses the
+ * plane within rounding. */
+static void flatten_inner(struct vg_boundary *b,
+                          const struct vg_junction_half *h)
+{
+  const double near = SNAP * vg_boundary_length(b);
+
+  for (size_t i = 0; i < b->inner.n_point && h->axis >= 0; i++)
+    if (fabs(b->inner.point[i][h->axis] - h->at) <= near)
+      b->inner.point[i][h->axis] = h->at;
 }
 
 /* The walls and the pieces of inner surfaces, with points of their own. n_wall:
@@ -234,6 +248,7 @@ vg_status vg_boundary_imprint(struct vg_boundary *b, int *is_cut,
   if (b->flow.axis >= 0)
     VG_TRY(vg_domain_flatten(&b->surface, b->flow.axis, b->flow.at, &off, err));
   half = half_of(b);
+  flatten_inner(b, &half);
   VG_TRY(vg_boundary_with_inner(b, &all, err));
   VG_TRY(vg_inner_orient_all(b, &all, err));
   VG_TRY(find_crossings(b, &all, show, &crosses, err));
