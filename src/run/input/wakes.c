@@ -103,18 +103,55 @@ static void stream_of(const struct vg_wake_row *row, double stream[3])
     stream[k] = k != row->stream / 2 ? 0 : row->stream % 2 ? -1 : 1;
 }
 
+static double edge_length(const struct body *b)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < b->edges.n; i++)
+    sum += vg_distance(b->m.point[b->edges.edge[i].point[0]],
+                       b->m.point[b->edges.edge[i].point[1]]);
+  return sum;
+}
+
+/* The flow is not decided yet. If patches have no conditions, a body in its
+ * tunnel looks like a body from the other side, on which the concave edges are
+ * convex, but few of them lie across the stream. */
+static vg_status compare_sides(struct body *b, const double stream[3],
+                               struct vg_error *err)
+{
+  struct vg_trailing outside = b->edges;
+  const double length = edge_length(b);
+  vg_status st;
+
+  b->edges = (struct vg_trailing)VG_TRAILING_INIT;
+  st = vg_trailing_find(&b->m, b->is_body, 1, stream, &b->edges, err);
+  if (st >= 0 && edge_length(b) > length) {
+    vg_trailing_release(&outside);
+    vg_note(b->read->notes,
+            "wakes: trailing edges are those of a flow inside of the surface "
+            "(--flow internal): outside of it, fewer were found");
+  } else {
+    vg_trailing_release(&b->edges);
+    b->edges = outside;
+  }
+  return st;
+}
+
 /* The trailing edges of the previous row serve this one if the stream is the
  * same. */
 static vg_status find_edges(struct body *b, struct vg_error *err)
 {
+  const enum vg_flow_kind flow = b->read->settings.flow;
   double stream[3];
+  vg_status st;
 
   if (b->number > 1 && b->row->stream == b->row[-1].stream) return VG_OK;
   stream_of(b->row, stream);
   vg_trailing_release(&b->edges);
-  return vg_trailing_find(&b->m, b->is_body,
-                          b->read->settings.flow == VG_FLOW_INTERNAL, stream,
-                          &b->edges, err);
+  st = vg_trailing_find(&b->m, b->is_body, flow == VG_FLOW_INTERNAL, stream,
+                        &b->edges, err);
+  if (st < 0 || flow != VG_FLOW_UNKNOWN) return st;
+  return compare_sides(b, stream, err);
 }
 
 /* Extent of the body along an axis. */
