@@ -198,6 +198,15 @@ static void make_deck_binary(const char *stem)
   save_deck(stem, "title\n\001\002\003 \377\n");
 }
 
+/* Without it, the surface is wrapped. */
+static void make_unrepaired(const char *file)
+{
+  char name[80];
+
+  snprintf(name, sizeof name, "%s.deck", file);
+  save_text(name, "unrepaired\nrepair\nno\n");
+}
+
 static void make_quote(const char *stem)
 {
   save_deck(stem, "title\nwrite\n\"cogsg,vtu\n");
@@ -276,7 +285,7 @@ const struct hostile hostile_projects[] = {
     .command = MESH },
   { .file = "through_itself",
     .phrase = "cannot bound a mesh",
-    .make = make_nothing,
+    .make = make_unrepaired,
     .command = MESH },
   { .file = "common_edge",
     .phrase = "cannot bound a mesh",

@@ -245,7 +245,7 @@ static void same_bytes_for_any_threads(void **unused)
 
 static void refuses_invalid_stretch_factors(void **unused)
 {
-  const double bad[3] = { 20.5, -1, NAN };
+  const double bad[3] = { 20.5, -2, NAN };
 
   (void)unused;
   for (int i = 0; i < 3; i++) {

@@ -560,15 +560,21 @@ void vg_remeshing_release(struct vg_remeshing *r)
   memset(r, 0, sizeof *r);
 }
 
+/* With inner surfaces points are not projected, so that all ranks can remesh.
+ */
+int vg_problem_has_maker(const struct vg_problem *p, struct vg_comm *comm)
+{
+  return vg_read_is_by_first(&p->read, comm) &&
+         !vg_read_keeps_triangles(&p->read) &&
+         vg_read_is_remeshed(&p->read, vg_problem_surface(p));
+}
+
 vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
                            int is_maker, vg_status st, struct vg_error *err)
 {
-  const struct vg_read *read = &p->read;
   struct vg_boundary *b = &p->boundary;
 
-  if (!vg_read_is_by_first(read, comm) || vg_read_keeps_triangles(read) ||
-      !vg_read_is_remeshed(read, vg_problem_surface(p)))
-    return vg_comm_agree(comm, st, err);
+  if (!vg_problem_has_maker(p, comm)) return vg_comm_agree(comm, st, err);
   st = vg_surface_bcast(comm, is_maker, st, &b->surface, err);
   if (st >= 0 && vg_comm_rank(comm)) b->remeshing.is_done = is_maker;
   return st;

@@ -49,7 +49,7 @@ static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
 {
   const struct vg_shape_options o = {
     .threads = vg_run_node_threads(r, &p->asked),
-    .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm)
+    .has_maker = r->rank && vg_problem_has_maker(p, r->comm)
   };
   vg_status st = vg_boundary_shape(&p->read, &o, show, &p->boundary, err);
 
