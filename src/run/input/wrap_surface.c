@@ -16,6 +16,9 @@
 /* S111: of the input area, and of the bounding box. */
 #define ROOM_INSIDE 0.05
 #define ROOM_FILL 0.7
+/* S112: of the length of the body: larger wraps round off what a user would
+ * miss, and are not applied without a request. */
+#define FINE_WRAP 0.025
 
 /* asked: [n_patch] 1: `walls` or the table layers names the patch. */
 static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
@@ -218,5 +221,6 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
              wrap, reason == VG_WRAP_HOLES ? " and bridges its holes" : "");
-  if (reason == VG_WRAP_FITS) b->cure.wrap = as_printed(wrap);
+  if (reason == VG_WRAP_FITS && wrap <= FINE_WRAP * vg_boundary_length(b))
+    b->cure.wrap = as_printed(wrap);
 }
