@@ -77,8 +77,9 @@ def corners(deck):
 
 
 def wakes(deck):
-    return all(r.get("size", 0.02) <= min(r.get("length", 2),
-                                          2 * r.get("height", 0.05))
+    return all((r.get("kind") == "sheet" or
+                r.get("size", 0.02) <= min(r.get("length", 2),
+                                           2 * r.get("height", 0.05)))
                and r.get("up", "auto") != r.get("stream", "x").lstrip("-")
                for r in deck.get("wakes", ()))
 

@@ -123,8 +123,9 @@ static vg_status lost(const struct tracer *w, const struct vg_junction *c,
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "the remeshed surface has lost the curve from (%g, %g, %g) to "
                  "(%g, %g, %g), along which an inner surface touches it, near "
-                 "(%g, %g, %g): give a smaller surface_tolerance, or set "
-                 "remesh_surface to no",
+                 "(%g, %g, %g): points of the surface may lie within rounding "
+                 "of the curve; move the inner surface by a little, or give "
+                 "surfaces that share the edges of the curve",
                  a[0], a[1], a[2], b[0], b[1], b[2], x[0], x[1], x[2]);
 }
 

@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 
 #define ROW_GROWTH 1.1
-#define ROW_MOST 3.0 /* longest row over the first one */
+#define ROW_MOST 3.0 /* longest row over the first one, at least */
 #define NONE UINT32_MAX
 
 /* A point of the trailing edge. */
@@ -150,12 +150,13 @@ static double mean_edge(const struct maker *k)
 static vg_status set_rows(struct maker *k, struct vg_error *err)
 {
   const double edge = fmin(mean_edge(k), k->s->length);
+  const double most = fmax(ROW_MOST * edge, k->s->row);
   double step = edge, at = 0;
 
   while (at < k->s->length) {
     k->n_row++;
     at += step;
-    step = fmin(step * ROW_GROWTH, ROW_MOST * edge);
+    step = fmin(step * ROW_GROWTH, most);
   }
   k->row = vg_alloc(k->n_row + 1, sizeof *k->row);
   if (!k->row) return vg_fail_memory(err, "a wake sheet");
@@ -163,7 +164,7 @@ static vg_status set_rows(struct maker *k, struct vg_error *err)
   step = edge;
   for (size_t i = 1; i <= k->n_row; i++) {
     k->row[i] = k->row[i - 1] + step * (k->s->length / at);
-    step = fmin(step * ROW_GROWTH, ROW_MOST * edge);
+    step = fmin(step * ROW_GROWTH, most);
   }
   return VG_OK;
 }

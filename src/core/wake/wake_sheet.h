@@ -16,6 +16,8 @@
 
 struct vg_wake_sheet {
   double length;  /* in local chords, > 0 */
+  double row;     /* longest row in local chords, if it is longer than three
+                     edges of the trailing edge */
   double flow[3]; /* direction of the stream, unit vector */
   double up[3];   /* of both edges of a blunt trailing edge, the sheet leaves
                      the upper one; unit vector */
@@ -30,7 +32,7 @@ struct vg_wake_sheet {
  * @param patch index in to->patch of the new triangles
  *
  * The first row is as long as the mean edge of the trailing edge, the others
- * grow by a tenth, up to three times that length. Chords and rows are those at
+ * grow by a tenth. Chords and rows are those at
  * the point of the trailing edge. O(n log n). VG_ERR_MEMORY leaves *to valid.
  * No triangles are added if no edge counts. */
 vg_status vg_wake_sheet_add(const struct vg_mesh *m,

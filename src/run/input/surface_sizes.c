@@ -263,7 +263,8 @@ static struct span find_span(const struct vg_boundary *b, const uint8_t *mark)
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 3 && mark[m->tri_patch[t]]; k++)
       vg_box_add(&box, m->point[m->tri[t][k]]);
-  s.axis = box.hi[1] - box.lo[1] >= box.hi[2] - box.lo[2] ? 1 : 2;
+  if (b->flow.axis > 0) s.axis = b->flow.axis;
+  else s.axis = box.hi[1] - box.lo[1] >= box.hi[2] - box.lo[2] ? 1 : 2;
   s.middle = find_middle(b, s.axis);
   s.tip = fmax(distance_along(&s, box.lo), distance_along(&s, box.hi));
   s.crosses = b->flow.axis != s.axis && box.lo[s.axis] < s.middle &&

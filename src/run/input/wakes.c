@@ -420,10 +420,41 @@ static size_t patch_of(const struct body *b)
   return at;
 }
 
+/* Earlier rows with a sheet along the same stream from one of the edges. */
+static vg_status refuse_same(const struct body *b, struct vg_error *err)
+{
+  const struct vg_wake_row *first = b->read->wakes.row;
+  uint8_t *on = vg_alloc(b->m.n_patch, 1);
+  int same = 0;
+  vg_status st = on ? VG_OK : vg_fail_memory(err, "the wakes");
+
+  for (const struct vg_wake_row *r = first; r < b->row && st >= 0; r++) {
+    if (r->kind != VG_WAKE_SHEET || r->stream != b->row->stream ||
+        strcmp(r->alpha, b->row->alpha) || strcmp(r->beta, b->row->beta))
+      continue;
+    memset(on, 0, b->m.n_patch);
+    st = vg_patch_ref_mark("wakes", r->patch, r->patch_name, &b->m,
+                           b->m.n_patch, on, err);
+    for (size_t i = 0; i < b->edges.n; i++) {
+      const uint32_t *p = b->edges.edge[i].patch;
+
+      same |= (on[p[0]] || on[p[1]]) && (b->on[p[0]] || b->on[p[1]]);
+    }
+    if (st >= 0 && same)
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "wakes: lines %zu and %zu make a sheet from the same "
+                   "trailing edge, which belongs to the patches on both of its "
+                   "sides; remove one of the lines",
+                   (size_t)(r - first) + 1, b->number);
+  }
+  free(on);
+  return st;
+}
+
 static vg_status place_sheet(struct body *b, struct vg_error *err)
 {
   struct vg_mesh *m = &b->read->surface;
-  struct vg_wake_sheet s = { .length = b->row->length };
+  struct vg_wake_sheet s = { .length = b->row->length, .row = b->row->size };
   const size_t n = m->n_tri;
   char patch[2 * VG_NAME_MAX + 4];
   size_t at;
@@ -434,6 +465,7 @@ static vg_status place_sheet(struct body *b, struct vg_error *err)
                    "wakes: line %zu: a section has no sheets; give kind "
                    "sources",
                    b->number);
+  VG_TRY(refuse_same(b, err));
   VG_TRY(find_flows(b, err));
   memcpy(s.flow, b->flow[0], sizeof s.flow);
   VG_TRY(find_up(b, 0, s.up, err));

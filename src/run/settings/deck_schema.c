@@ -144,7 +144,8 @@ static const char *const further[][2] = {
     "are above 0, 2 y_plus L / (Re sqrt(cf / 2)) for the skin friction "
     "coefficient cf of a flat plate at the trailing edge" },
   { "wakes",
-    "wakes: size is at most length, and at most twice height; stream and up "
+    "wakes: size is at most length, and at most twice height, unless kind is "
+    "sheet; stream and up "
     "name different axes" },
   { "periodic",
     "periodic: tx, ty and tz are given together and not all 0, or angle, not "

@@ -148,7 +148,7 @@ vg_status vg_wake_rows_check(const struct vg_settings *s, struct vg_error *err)
     const struct vg_wake_row *r = &s->wake_row[i];
 
     vg_param_format(&columns[PATCH], r, patch, sizeof patch);
-    if (r->size > 2 * r->height)
+    if (r->kind == VG_WAKE_SOURCES && r->size > 2 * r->height)
       return vg_fail(err, VG_ERR_INPUT,
                      "wakes: line %zu, patch %s: the size, %g chords, exceeds "
                      "the height of the wake, 2 x %g; reduce size or increase "
@@ -166,7 +166,7 @@ vg_status vg_wake_rows_check(const struct vg_settings *s, struct vg_error *err)
                      "give one angle in alpha and in beta, and a line for each "
                      "further sheet",
                      i + 1, patch);
-    if (r->size > r->length)
+    if (r->kind == VG_WAKE_SOURCES && r->size > r->length)
       return vg_fail(err, VG_ERR_INPUT,
                      "wakes: line %zu, patch %s: the size, %g chords, exceeds "
                      "the length of the wake, %g; reduce size or increase "

@@ -52,6 +52,10 @@ row '*  sheet  1  0,3' >w/two.deck
 vanguard mesh -q -p w/wing-sharp --deck w/two.deck --out w/no
 exits 1
 says err "a sheet follows one stream; give one angle in alpha and in beta"
+{ row '1  sheet  1  3' && echo '*  sheet  2  3'; } >w/same.deck
+vanguard mesh -q -p w/wing-sharp --deck w/same.deck --out w/no
+exits 1
+says err "lines 1 and 2 make a sheet from the same trailing edge"
 row 'tip  sheet  1  0' >w/tip.deck
 vanguard mesh -q -p w/wing-sharp --deck w/tip.deck --out w/no
 exits 1
