@@ -368,8 +368,8 @@ void vg_boundary_release(struct vg_boundary *b);
 /** Triangles of the boundary, or, before vg_boundary_shape, those of `read`. */
 const struct vg_mesh *vg_problem_surface(const struct vg_problem *p);
 
-/** 1 if rank 0 makes the surface for all ranks, since it alone has the CAD model
- * onto which points are projected. */
+/** 1 if rank 0 makes the surface for all ranks, since it alone has the CAD
+ * model onto which points are projected. */
 int vg_problem_has_maker(const struct vg_problem *p, struct vg_comm *comm);
 
 /** Called after vg_boundary_shape on several ranks: sends the surface that rank
