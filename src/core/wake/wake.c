@@ -11,11 +11,11 @@
 #include "core/geometry/vector.h"
 
 /* W2: limits of a panel and of a strip. */
-#define DEVIATION 0.1      /* of the half height */
-#define CELLS_PER_CUBE 9.0 /* tetrahedra per cube of the edge length */
+#define DEVIATION 0.1 /* of the half height */
 #define CHORD_RATIO 1.15
-#define STRIP_RATIO 1.1 /* of sizes along the stream */
-#define CHORD_SLOPE 4.0 /* change of the chord per unit of span */
+#define STRIP_RATIO 1.1    /* of sizes along the stream */
+#define CHORD_SLOPE 4.0    /* change of the chord per unit of span */
+#define CELLS_PER_CUBE 9.0 /* tetrahedra per cube of the edge length */
 
 #define NONE UINT32_MAX
 

@@ -210,20 +210,10 @@ static void add_triangles(const struct maker *k, struct vg_mesh *to,
     }
 }
 
-static int enlarge(void *array, size_t n, size_t size)
-{
-  void *block;
-
-  memcpy(&block, array, sizeof block);
-  block = vg_realloc(block, n, size);
-  if (!block) return -1;
-  memcpy(array, &block, sizeof block);
-  return 0;
-}
-
 static vg_status fill(const struct maker *k, struct vg_mesh *to, uint32_t patch,
                       struct vg_error *err)
 {
+  size_t cap[3] = { to->n_point, to->n_tri, to->n_tri };
   size_t n_edge = 0, n_point, n_tri;
 
   for (size_t i = 0; i < k->t->n; i++) n_edge += k->keeps[i];
@@ -233,9 +223,9 @@ static vg_status fill(const struct maker *k, struct vg_mesh *to, uint32_t patch,
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a wake sheet would have %zu triangles; reduce its length",
                    2 * n_edge * k->n_row);
-  if (enlarge(&to->point, n_point, sizeof *to->point) ||
-      enlarge(&to->tri, n_tri, sizeof *to->tri) ||
-      enlarge(&to->tri_patch, n_tri, sizeof *to->tri_patch))
+  if (vg_reserve(&to->point, &cap[0], n_point, sizeof *to->point) ||
+      vg_reserve(&to->tri, &cap[1], n_tri, sizeof *to->tri) ||
+      vg_reserve(&to->tri_patch, &cap[2], n_tri, sizeof *to->tri_patch))
     return vg_fail_memory(err, "a wake sheet");
   add_points(k, to);
   add_triangles(k, to, patch);

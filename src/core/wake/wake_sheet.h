@@ -32,9 +32,9 @@ struct vg_wake_sheet {
  * @param patch index in to->patch of the new triangles
  *
  * The first row is as long as the mean edge of the trailing edge, the others
- * grow by a tenth. Chords and rows are those at
- * the point of the trailing edge. O(n log n). VG_ERR_MEMORY leaves *to valid.
- * No triangles are added if no edge counts. */
+ * grow by a tenth. Chords and rows are those at the point of the trailing edge.
+ * O(n log n). VG_ERR_MEMORY leaves *to valid. No triangles are added if no edge
+ * counts. */
 vg_status vg_wake_sheet_add(const struct vg_mesh *m,
                             const struct vg_trailing *t, const uint8_t *on,
                             const struct vg_wake_sheet *s, struct vg_mesh *to,

@@ -20,15 +20,10 @@ static vg_status find_crossings(const struct vg_boundary *b,
                                 struct vg_mesh *all, struct vg_display *show,
                                 int *any, struct vg_error *err)
 {
-  struct vg_surface_check_options o = vg_options_check(&b->read->settings);
+  struct vg_surface_check_options o = vg_inner_check_options(b, show);
   struct vg_surface_report r = { .n_defect = 0 };
   vg_status st;
 
-  o.repair = 0;
-  o.require_bc = 0;
-  o.external = -1;
-  o.threads = b->threads;
-  o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_surface_check(all, &o, &r, err));
   *any = 0;
   for (size_t i = 0; i < r.n_defect; i++)

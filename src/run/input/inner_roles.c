@@ -8,7 +8,6 @@
 #include "base/memory.h"
 #include "core/mesh/copies.h"
 #include "io/cad/cad.h"
-#include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
 #include "run/input/wakes.h"
 #include "run/input/zone_table.h"
@@ -45,8 +44,7 @@ int vg_boundary_wants_inner(const struct vg_boundary *b)
 
 int vg_read_has_solid_zones(const struct vg_read *r)
 {
-  return r->settings.cad.solids == VG_CAD_SOLIDS_ZONES && !*r->files.front &&
-         vg_format_is_cad(r->files.surface);
+  return r->settings.cad.solids == VG_CAD_SOLIDS_ZONES && vg_read_is_cad(r);
 }
 
 const char *vg_read_keeps_triangles(const struct vg_read *r)

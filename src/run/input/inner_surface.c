@@ -379,21 +379,29 @@ static void drop_legal(struct vg_surface_report *r, size_t n_wall, size_t n_tri)
   r->n_defect = n;
 }
 
-/* Checks surface and inner surfaces together. Only if there are defects, do
- * they replace surface and check of b, for reports. */
-static vg_status check_together(struct vg_boundary *b, struct vg_mesh *all,
-                                struct vg_display *show, struct vg_error *err)
+struct vg_surface_check_options vg_inner_check_options(
+  const struct vg_boundary *b, struct vg_display *show)
 {
   struct vg_surface_check_options o = vg_options_check(&b->read->settings);
-  struct vg_surface_report r = { .n_defect = 0 };
-  const size_t n_wall = b->surface.n_tri;
-  vg_status st;
 
   o.repair = 0;
   o.require_bc = 0;
   o.external = -1;
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
+  return o;
+}
+
+/* Checks surface and inner surfaces together. Only if there are defects, do
+ * they replace surface and check of b, for reports. */
+static vg_status check_together(struct vg_boundary *b, struct vg_mesh *all,
+                                struct vg_display *show, struct vg_error *err)
+{
+  struct vg_surface_check_options o = vg_inner_check_options(b, show);
+  struct vg_surface_report r = { .n_defect = 0 };
+  const size_t n_wall = b->surface.n_tri;
+  vg_status st;
+
   VG_TRY(vg_surface_check(all, &o, &r, err));
   drop_legal(&r, n_wall, all->n_tri);
   if (!r.n_defect) goto done;

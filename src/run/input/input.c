@@ -562,8 +562,7 @@ done:
 
 int vg_read_is_by_first(const struct vg_read *r, struct vg_comm *comm)
 {
-  return vg_comm_size(comm) > 1 && !*r->files.front &&
-         vg_format_is_cad(r->files.surface);
+  return vg_comm_size(comm) > 1 && vg_read_is_cad(r);
 }
 
 /* st: status of this rank so far. Collective. */

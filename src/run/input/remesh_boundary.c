@@ -62,7 +62,7 @@ static int is_tessellation(const struct vg_read *r)
        *r->files.surface && vg_format_is_tessellation(r->files.surface);
 }
 
-static int is_cad(const struct vg_read *r)
+int vg_read_is_cad(const struct vg_read *r)
 {
   return !*r->files.front && vg_format_is_cad(r->files.surface);
 }
@@ -74,7 +74,7 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
     return r->settings.remesh == VG_ANSWER_YES;
   if (is_tessellation(r))
     return !vg_read_keeps_triangles(r) && sliver_share(surface) > MOST;
-  return is_cad(r) && !(r->settings.wrap > 0);
+  return vg_read_is_cad(r) && !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)
@@ -195,7 +195,7 @@ static vg_status remesh(struct vg_boundary *b, const struct remesh_request *q,
   o.field = sizes->field;
   o.h_max = vg_boundary_largest_edge(b, o.h_max);
   o.hard = q->hard;
-  o.keeps_borders = is_cad(b->read);
+  o.keeps_borders = vg_read_is_cad(b->read);
   o.course = course;
   o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;
@@ -446,7 +446,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   areas(&b->surface, 1, r->area);
   VG_TRY(vg_surface_spacing_measure(b, r->spacing, err));
   note_faults(b);
-  if (is_cad(b->read) && !b->model.cad)
+  if (vg_read_is_cad(b->read) && !b->model.cad)
     vg_note(b->notes,
             "points are not projected onto the CAD model, since the surface "
             "has inner surfaces: it deviates from the model by the chord error "

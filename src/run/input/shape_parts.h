@@ -59,6 +59,9 @@ int vg_boundary_wants_inner(const struct vg_boundary *b);
  * NULL: they do. Static string. */
 const char *vg_read_keeps_triangles(const struct vg_read *read);
 
+/** Is the surface that of a CAD file? */
+int vg_read_is_cad(const struct vg_read *read);
+
 /** Is it a CAD file whose solids are zones? */
 int vg_read_has_solid_zones(const struct vg_read *read);
 
@@ -108,6 +111,10 @@ vg_status vg_boundary_put_inner(struct vg_boundary *b, struct vg_display *show,
  * message on an open surface; "" without any. */
 void vg_boundary_name_inner(const struct vg_boundary *b, char *text,
                             size_t size);
+
+/** Options of a check of surface and inner surfaces together. */
+struct vg_surface_check_options vg_inner_check_options(
+  const struct vg_boundary *b, struct vg_display *show);
 
 /* run/input/inner_remesh.c ------------------------------------------------ */
 
