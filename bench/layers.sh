@@ -95,8 +95,8 @@ fi
 
 [ -z "$out" ] || : > "$out"
 {
-  echo "Vanguard, $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d);" \
-    "medians of $runs runs, load before $(cut -d' ' -f1 /proc/loadavg)."
+  echo "$(about_machine)" \
+    "Medians of $runs runs, load before $(cut -d' ' -f1 /proc/loadavg)."
   cat << END
 
 Growing, microseconds per wall point:

@@ -364,7 +364,7 @@ ROW
 [ -z "$out" ] || : > "$out"
 failed=0 tried=0
 say << HEAD
-Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg); medians of $runs runs, sizes x $scale.
+$(about_machine) Load before $(cut -d' ' -f1 /proc/loadavg); medians of $runs runs, sizes x $scale.
 HEAD
 for part in price two balance leaf memory model replay; do
   wanted "$part" || continue

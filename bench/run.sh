@@ -4,7 +4,7 @@
 #
 # usage: bench/run.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
 #                     [--runs N] [--threads N] [--meshcheck PROGRAM]
-#                     [--no-peers] [CASE...]
+#                     [--gmsh PROGRAM] [--tetgen PROGRAM] [--no-peers] [CASE...]
 #   --quick      one run of every case at a tenth of its size
 #   --out        write the table to FILE too
 #   --build      build folder (default build/release, built if missing)
@@ -12,6 +12,7 @@
 #   --runs       runs of a small case (default 3; large ones: 1)
 #   --threads    threads of Vanguard and of HXT (default 1); TetGen has one
 #   --meshcheck  a program that checks NAME.lb8.ugrid, exit status 0: valid
+#   --gmsh, --tetgen  other versions than those of the system
 #   --no-peers   only Vanguard
 #   CASE         box-1M box-10M sphere-2M sphere-12M wing wing-half wing-sharp
 #
@@ -23,8 +24,11 @@
 # Seconds are those of the volume stage, from the boundary triangulation to the
 # finished mesh, without reading and writing: for Vanguard the fill and its
 # optimisation, for TetGen its total without output, for HXT "Done meshing 3D".
-# All are wall-clock times; TetGen reports only CPU time, which is scaled by
-# elapsed / CPU time of its process. Peak memory is that of the whole process.
+# With one thread they are processor times, pinned to one core, because other
+# load changes these least: for Vanguard the sum over the tasks of its
+# timeline. With more threads they are wall-clock times, and TetGen's processor
+# time is scaled by elapsed / CPU time of its process. Peak memory is that of
+# the whole process.
 # All three keep the boundary triangulation of Vanguard's mesh, and use the same
 # sizing field: TetGen as a background mesh, HXT as a view on that mesh. Gmsh
 # evaluates a view slowly, so HXT also runs with the sizes of the boundary
@@ -37,10 +41,10 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=bench/common.sh
 . "$root/bench/common.sh"
 build=$root/build/release
-work='' meshcheck='' quick=0 runs=3 threads=1 no_peers=0
+work='' meshcheck='' gmsh=gmsh tetgen=tetgen quick=0 runs=3 threads=1 no_peers=0
 TETGEN_OPTIONS=-pq1.414Ym
 
-take_options "out build work runs threads meshcheck" "quick no-peers" "$@"
+take_options "out build work runs threads meshcheck gmsh tetgen" "quick no-peers" "$@"
 [ ${#cases[@]} -gt 0 ] || cases=(box-1M wing wing-half wing-sharp sphere-2M
                                  box-10M sphere-12M)
 
@@ -68,8 +72,13 @@ export OMP_NUM_THREADS=$threads
 
 need /usr/bin/time time
 need jq jq
-if [ $no_peers = 0 ]; then need tetgen tetgen; need gmsh gmsh; fi
+if [ $no_peers = 0 ]; then need "$tetgen" tetgen; need "$gmsh" gmsh; fi
 
+pin=()
+if [ "$threads" = 1 ]; then
+  need taskset util-linux
+  pin=(taskset -c "$(taskset -cp $$ | sed 's/.*[ ,-]//')")
+fi
 make_programs "$build" vanguard vg_bench_peers
 vanguard=$build/bin/vanguard
 helper=$build/bin/vg_bench_peers
@@ -82,7 +91,15 @@ peak_mb() { awk '/Maximum resident/ { printf "%.0f", $NF / 1024 }' "$1"; }
 timed() {
   local log=$1
   shift
-  /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1
+  /usr/bin/time -v -o "$log.time" "${pin[@]}" "$@" > "$log" 2>&1
+}
+# Version 1.5 does not print its own; it is that of the Debian package.
+tetgen_version() {
+  local text
+  text=$("$tetgen" -h 2>&1 | sed -n 's/.*Version \([0-9.]*\).*/\1/p') || true
+  [ -n "$text" ] || [ "$tetgen" != tetgen ] ||
+    text=$(dpkg-query -W -f '${Version}' tetgen 2>/dev/null) || true
+  echo "${text:-of unknown version}"
 }
 # within_threads LOG N: N threads are enough for the CPU time of a process that
 # `timed` ran.
@@ -97,42 +114,50 @@ within_threads() {
 # seconds and peak MB to NAME.runs.
 run_vanguard() {
   timed "$1/vanguard.log" "$vanguard" mesh -p "$1/$2" --out "$1/out" \
-    --write lb8.ugrid --layers no --threads "$threads" ||
+    --write lb8.ugrid --layers no --threads "$threads" --timeline ||
     { tail -5 "$1/vanguard.log" >&2; return 1; }
   check_workers "$1/out/$2.report.json" 1 "$threads"
   within_threads "$1/vanguard.log" "$threads"
-  echo "$(get "$1/out/$2.report.json" .seconds.fill) \
-    $(peak_mb "$1/vanguard.log.time")" >> "$1/vanguard.runs"
+  local seconds
+  if [ "$threads" = 1 ]; then
+    seconds=$(get "$1/out/$2.timeline.json" \
+      '(.columns | index("cpu")) as $i | [.spans[][$i]] | add')
+  else
+    seconds=$(get "$1/out/$2.report.json" .seconds.fill)
+  fi
+  echo "$seconds $(peak_mb "$1/vanguard.log.time")" >> "$1/vanguard.runs"
 }
 run_tetgen() {
-  timed "$1/tetgen.log" tetgen $TETGEN_OPTIONS "$1/peer.smesh" ||
+  timed "$1/tetgen.log" "$tetgen" $TETGEN_OPTIONS "$1/peer.smesh" ||
     { tail -5 "$1/tetgen.log" >&2; return 1; }
   within_threads "$1/tetgen.log" 1
-  echo "$(awk '/^Total running seconds/ { t = $NF }
+  echo "$(awk -v threads="$threads" '/^Total running seconds/ { t = $NF }
     /^Output seconds/ { o = $NF }
     /(User|System) time/ { cpu += $NF }
     /Elapsed/ { n = split($NF, part, ":")
                 for (i = 1; i <= n; i++) wall = 60 * wall + part[i] }
-    END { print (t - o) * (wall > cpu ? wall / cpu : 1) }' \
+    END { print (t - o) * (threads > 1 && wall > cpu ? wall / cpu : 1) }' \
     "$1/tetgen.log" "$1/tetgen.log.time") \
     $(peak_mb "$1/tetgen.log.time")" >> "$1/tetgen.runs"
 }
 hxt() {   # hxt FOLDER NAME SCRIPT
   local got
-  timed "$1/$2.log" gmsh -3 -algo hxt -nt "$threads" -format msh22 -bin \
+  timed "$1/$2.log" "$gmsh" -3 -algo hxt -nt "$threads" -format msh22 -bin \
     -o "$1/$2.msh" "$1/$3" || { tail -5 "$1/$2.log" >&2; return 1; }
   got=$(sed -n 's/.*max\. \([0-9]*\) thread.*/\1/p' "$1/$2.log")
   [ "$got" = "$threads" ] ||
     die "$1/$2.log: gmsh had $got threads instead of $threads"
   within_threads "$1/$2.log" "$threads"
-  echo "$(sed -n 's/.*Done meshing 3D (Wall \([0-9.]*\)s.*/\1/p' \
+  got=Wall
+  [ "$threads" != 1 ] || got=CPU
+  echo "$(sed -n "s/.*Done meshing 3D (.*$got \([0-9.]*\)s.*/\1/p" \
     "$1/$2.log") $(peak_mb "$1/$2.log.time")" >> "$1/$2.runs"
 }
 
 prepare_peers() {
   "$helper" prepare "$1/out/$2.lb8.ugrid" "$1/out/$2.resolved.deck" "$1/peer" \
     > "$1/peer.log"
-  tetgen "$1/peer.b.node" >> "$1/peer.log"
+  "$tetgen" "$1/peer.b.node" >> "$1/peer.log"
   mv "$1/peer.b.1.node" "$1/peer.b.node"
   mv "$1/peer.b.1.ele" "$1/peer.b.ele"
   "$helper" view "$1/peer"
@@ -222,7 +247,7 @@ one_case() {
 [ -z "$out" ] || : > "$out"
 say << END
 $(about_machine)
-TetGen $(tetgen -h 2>&1 | sed -n 's/.*Version \([0-9.]*\).*/\1/p' | head -1) $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt $threads; threads of Vanguard and HXT: $threads, of TetGen: 1.
+TetGen $(tetgen_version) $TETGEN_OPTIONS, gmsh $("$gmsh" --version 2>&1 | tail -1) HXT -nt $threads; threads of Vanguard and HXT: $threads, of TetGen: 1.
 
 | case | mesher | cells | volume stage, s (min-max) | cells/s | / TetGen | / HXT | peak MB | B/cell | dihedral min / max | % < 20 | radius ratio | % edges in [0.7, 1.5] | edge / target | valid | meshcheck |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|

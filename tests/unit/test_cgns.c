@@ -378,6 +378,76 @@ static void refuses_sections(void **state)
   refuse(&t, VG_ERR_INPUT, "nothing to mesh");
 }
 
+/* --- solutions --- */
+
+/* A solution with an array of four values. */
+static void solution(struct tree *t, const char *name, const char *at,
+                     const char *array, double first)
+{
+  const double v[4] = { first, first + 1, first + 2, first + 3 };
+  int64_t id = add(t, t->zone, name, "FlowSolution_t", "MT", 0, 1, 0, NULL);
+
+  if (at) add_text(t, id, "GridLocation", "GridLocation_t", at);
+  add(t, id, array, "DataArray_t", "R8", 1, 1, 4, v);
+}
+
+static const char *asked;
+static double *answer;
+
+static vg_status parse_solution(struct vg_input *in, struct vg_mesh *out,
+                                struct vg_error *err)
+{
+  return vg_cgns_solution_parse(in, asked, out, &answer, err);
+}
+
+static vg_status read_solution(int n_zone, const char *name,
+                               struct vg_error *err)
+{
+  struct tree t;
+  struct vg_mesh m = VG_MESH_INIT;
+  unsigned char *data;
+  vg_status st;
+
+  start(&t, 3);
+  for (int z = 0; z < n_zone; z++) {
+    zone(&t, z ? "second" : "first", 4, all);
+    section(&t, "cells", 20, 1, 5, sizeof t1_mixed / sizeof *t1_mixed,
+            t1_mixed);
+    solution(&t, "begin", NULL, "Density", 0);
+    solution(&t, "end", "Vertex", "Density", 10);
+    solution(&t, "in cells", "CellCenter", "Temperature", 5);
+  }
+  assert_int_equal(vg_cgns_tree_close(t.t, NULL), VG_OK);
+  data = malloc(t.store.size);
+  vg_cgns_store_get(&t.store, 0, t.store.size, data);
+  asked = name;
+  answer = NULL;
+  st = io_parse_bytes(parse_solution, data, t.store.size, &m, err);
+  free(data);
+  vg_cgns_store_release(&t.store);
+  vg_mesh_release(&m);
+  return st;
+}
+
+static void solutions_at_points(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  if (read_solution(1, "Density", &err) != VG_OK) fail_msg("%s", err.text);
+  for (int i = 0; i < 4; i++) assert_true(answer[i] == 10 + i);
+  free(answer);
+  assert_int_equal(read_solution(1, "Temperature", &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "Vertex"));
+  assert_int_equal(read_solution(1, "Mach", &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "points are: Density, Density"));
+  assert_int_equal(read_solution(1, "", &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "--field"));
+  assert_int_equal(read_solution(2, "Density", &err), VG_ERR_UNSUPPORTED);
+  assert_non_null(strstr(err.text, "2 zones"));
+  assert_null(answer);
+}
+
 static void refuses_trees(void **state)
 {
   static const int32_t tri[3] = { 1, 2, 3 }, size[9] = { 2, 2, 2 };
@@ -831,6 +901,7 @@ int main(void)
     cmocka_unit_test(boundary_conditions_define_patches),
     cmocka_unit_test(zones_are_joined),
     cmocka_unit_test(refuses_sections),
+    cmocka_unit_test(solutions_at_points),
     cmocka_unit_test(refuses_trees),
     cmocka_unit_test(surface_blocks_are_joined),
     cmocka_unit_test(a_layer_of_points_is_a_surface),

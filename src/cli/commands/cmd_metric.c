@@ -14,6 +14,8 @@
 #include "cli/common/options.h"
 #include "core/hessian/multiscale.h"
 #include "core/sizing/sizing.h"
+#include "io/foam/foam_read.h"
+#include "io/mesh/foam.h"
 #include "io/mesh/medit.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu.h"
@@ -97,17 +99,36 @@ static vg_status check_mesh(const struct job *j, struct vg_error *err)
   return st;
 }
 
+/* Length of the name of the solution without its suffix, or of the folder of a
+ * case without ".openfoam" and a slash at its end. */
+static size_t stem_of(const char *in)
+{
+  static const char suffix[] = "." VG_FOAM_SUFFIX;
+  const size_t n = sizeof suffix - 1;
+  const char *dot = strrchr(in, '.');
+  size_t len = strlen(in);
+
+  if (!vg_foam_is_case(in)) return dot ? (size_t)(dot - in) : len;
+  while (len > 1 && in[len - 1] == '/') len--;
+  return len > n && !strncmp(in + len - n, suffix, n) ? len - n : len;
+}
+
 /* The file, and the lock on its names. */
 static vg_status claim(struct job *j, struct vg_error *err)
 {
-  const char *in = j->a->in, *dot = strrchr(in, '.'), *suffix;
+  const char *in = j->a->in, *suffix;
   size_t n_stem;
   char *stem;
   vg_status st;
 
+  n_stem = stem_of(in);
+  if (!j->a->out && in[n_stem - 1] == '.')
+    return vg_fail(err, VG_ERR_USAGE,
+                   "%s: the folder has no name here; name the file of the "
+                   "metric by --out",
+                   in);
   if (j->a->out) j->file = strdup(j->a->out);
-  else if (asprintf(&j->file, "%.*s.metric.vtu",
-                    (int)(dot ? (size_t)(dot - in) : strlen(in)), in) < 0)
+  else if (asprintf(&j->file, "%.*s.metric.vtu", (int)n_stem, in) < 0)
     j->file = NULL;
   if (!j->file) return vg_fail_memory(err, "a file name");
   suffix = metric_suffix(j->file);
@@ -403,13 +424,16 @@ int vg_cmd_metric(int argc, char **argv)
     .options = options,
     .parser = option,
     .args_doc = "SOLUTION",
-    .doc = "Compute from the flow solution SOLUTION the metric of a mesh of N "
-           "cells on which it would have the least interpolation error. "
-           "SOLUTION is a .vtu with values at the points, a .sol or .solb next "
-           "to its mesh, or a .csv, such as SU2's restart file, with --mesh. "
-           "'vanguard mesh --sizes' makes the mesh. Layers are left out: "
-           "pyramids, prisms and hexahedra, unless there are no tetrahedra, "
-           "and the layer tetrahedra that a binary .ugrid records."
+    .doc =
+      "Compute from the flow solution SOLUTION the metric of a mesh of N "
+      "cells on which it would have the least interpolation error. "
+      "SOLUTION is a .vtu or .cgns with values at the points, the folder of an "
+      "OpenFOAM case (its last time) or of one of its times, a .sol or "
+      ".solb next to its mesh, or a .csv, such as SU2's restart file, "
+      "with --mesh. "
+      "'vanguard mesh --sizes' makes the mesh. Layers are left out: "
+      "pyramids, prisms and hexahedra, unless there are no tetrahedra, "
+      "and the layer tetrahedra that a binary .ugrid records."
   };
   struct arguments a = { .o = { .norm = 2,
                                 .growth = 1.5,

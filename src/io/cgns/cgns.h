@@ -63,6 +63,15 @@ vg_status vg_cgns_read(const char *path, struct vg_mesh *out,
 vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
                         struct vg_error *err);
 
+/** As vg_cgns_parse for a file with one zone, with the values at its points of
+ * the last FlowSolution_t that has an array of this name.
+ * @param name   "": none; the error lists the names of the arrays
+ * @param value  out: [n_point], to be freed
+ * VG_ERR_INPUT: no such array at the points. */
+vg_status vg_cgns_solution_parse(struct vg_input *in, const char *name,
+                                 struct vg_mesh *out, double **value,
+                                 struct vg_error *err);
+
 /** Write cells and boundary. The same mesh always gives the same bytes.
  * VG_ERR_INPUT: no cells; VG_ERR_IO, VG_ERR_MEMORY. No file is left on failure.
  * Threads: one at a time, a restriction of the HDF5 library. */

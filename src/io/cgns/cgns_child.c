@@ -2,6 +2,7 @@
 /* Runs the HDF5 library in a child process, which a damaged file may crash or
  * keep in an endless loop; see io/cgns/cgns.h. */
 #define _GNU_SOURCE
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -19,6 +20,7 @@ struct answer {
   vg_status st;
   struct vg_error err;
   struct vg_mesh m; /* only the counts are used, not the pointers */
+  size_t n_value;   /* [points], or 0 without a field */
 };
 
 /* Arrays of a mesh, in the order in which they are sent. */
@@ -46,11 +48,12 @@ static void list_arrays(struct vg_mesh *m, struct array list[N_ARRAY])
 /* --- the child --- */
 
 struct question {
-  size_t n_path, size;
+  size_t n_path, size, n_field;
 };
 
-/* Receive the path and the bytes of the file. */
-static int get_input(int fd, struct vg_input *in)
+/* Receive the path and the bytes of the file, and the name of the field, if
+ * one is asked for. */
+static int get_input(int fd, struct vg_input *in, char **field)
 {
   struct question q;
   char *path;
@@ -60,8 +63,10 @@ static int get_input(int fd, struct vg_input *in)
   if (!vg_child_get(fd, &q, sizeof q)) return 0;
   path = vg_alloc(q.n_path, 1);
   data = vg_alloc(q.size, 1);
-  good = path && data && vg_child_get(fd, path, q.n_path) &&
-         vg_child_get(fd, data, q.size);
+  *field = q.n_field ? vg_alloc(q.n_field, 1) : NULL;
+  good = path && data && (*field || !q.n_field) &&
+         vg_child_get(fd, path, q.n_path) && vg_child_get(fd, data, q.size) &&
+         (!*field || vg_child_get(fd, *field, q.n_field));
   if (good) {
     in->path = path;
     in->data = data;
@@ -73,21 +78,29 @@ static int get_input(int fd, struct vg_input *in)
 __attribute__((noreturn)) static void serve(int fd)
 {
   struct vg_input in = VG_INPUT_INIT;
-  struct answer a = { VG_OK, VG_ERROR_INIT, VG_MESH_INIT };
+  struct answer a = { VG_OK, VG_ERROR_INIT, VG_MESH_INIT, 0 };
   struct array list[N_ARRAY];
   const struct rlimit no_file = { 0, 0 };
   struct rlimit seconds;
+  char *field;
+  double *value = NULL;
   int good;
 
-  if (!get_input(fd, &in)) _exit(1);
+  if (!get_input(fd, &in, &field)) _exit(1);
   seconds.rlim_cur = seconds.rlim_max = SECONDS(in.size);
   setrlimit(RLIMIT_CPU, &seconds);
   setrlimit(RLIMIT_NOFILE, &no_file); /* HDF5 opens no other file */
   a.st = vg_cgns_take(&in, &a.m, &a.err);
+  if (a.st == VG_OK && field) {
+    a.st = vg_cgns_take_solution(&in, field, a.m.n_point, &value, &a.err);
+    a.n_value = a.m.n_point;
+  }
   good = vg_child_put(fd, &a, sizeof a);
   list_arrays(&a.m, list);
   for (int i = 0; i < N_ARRAY && good && a.st == VG_OK; i++)
     good = vg_child_put(fd, *list[i].at, list[i].n * list[i].size);
+  if (good && a.st == VG_OK)
+    good = vg_child_put(fd, value, a.n_value * sizeof *value);
   _exit(!good);
 }
 
@@ -101,8 +114,9 @@ static vg_status is_lost(const char *path, struct vg_error *err)
                  path);
 }
 
+/* value: NULL without a field. */
 static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
-                             struct vg_error *err)
+                             double **value, struct vg_error *err)
 {
   struct answer a;
   struct array list[N_ARRAY];
@@ -122,15 +136,25 @@ static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
     else if (!vg_child_get(fd, *list[i].at, list[i].n * list[i].size))
       st = is_lost(path, err);
   }
+  if (st == VG_OK && value) {
+    *value = vg_alloc(a.n_value, sizeof **value);
+    if (!*value) st = vg_fail_memory(err, path);
+    else if (!vg_child_get(fd, *value, a.n_value * sizeof **value)) {
+      free(*value);
+      st = is_lost(path, err);
+    }
+  }
   if (st == VG_OK) vg_mesh_move(out, &a.m);
   vg_mesh_release(&a.m);
   return st;
 }
 
-static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
+static vg_status read_apart(struct vg_input *in, const char *field,
+                            struct vg_mesh *out, double **value,
                             struct vg_error *err)
 {
-  struct question q = { strlen(in->path) + 1, in->size };
+  struct question q = { strlen(in->path) + 1, in->size,
+                        field ? strlen(field) + 1 : 0 };
   struct vg_child c;
   vg_status st;
 
@@ -141,8 +165,9 @@ static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
                    in->path);
   if (vg_child_put(c.fd, &q, sizeof q) &&
       vg_child_put(c.fd, in->path, q.n_path) &&
-      vg_child_put(c.fd, in->data, q.size))
-    st = take_answer(c.fd, in->path, out, err);
+      vg_child_put(c.fd, in->data, q.size) &&
+      (!field || vg_child_put(c.fd, field, q.n_field)))
+    st = take_answer(c.fd, in->path, out, value, err);
   else st = is_lost(in->path, err);
   vg_child_close(&c);
   return st;
@@ -158,12 +183,13 @@ static int is_hdf5(const struct vg_input *in)
   return 0;
 }
 
-vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
-                        struct vg_error *err)
+static vg_status parse(struct vg_input *in, const char *field,
+                       struct vg_mesh *out, double **value,
+                       struct vg_error *err)
 {
   static const char adf[] = "ADF Database";
 
-  if (is_hdf5(in)) return read_apart(in, out, err);
+  if (is_hdf5(in)) return read_apart(in, field, out, value, err);
   if (memmem(in->data, in->size < 64 ? in->size : 64, adf, sizeof adf - 1))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: this CGNS file is in ADF, not in HDF5; convert it "
@@ -173,6 +199,19 @@ vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
                    in->path);
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: this is not a CGNS file: neither HDF5 nor ADF", in->path);
+}
+
+vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
+                        struct vg_error *err)
+{
+  return parse(in, NULL, out, NULL, err);
+}
+
+vg_status vg_cgns_solution_parse(struct vg_input *in, const char *name,
+                                 struct vg_mesh *out, double **value,
+                                 struct vg_error *err)
+{
+  return parse(in, name, out, value, err);
 }
 
 vg_status vg_cgns_read(const char *path, struct vg_mesh *out,

@@ -11,4 +11,14 @@
 vg_status vg_cgns_take(struct vg_input *in, struct vg_mesh *out,
                        struct vg_error *err);
 
+/** Read the values of the last FlowSolution_t at the points that has an array
+ * of this name, in this process.
+ * @param n_point  points of the mesh of vg_cgns_take
+ * @param value    out: [n_point], to be freed
+ * VG_ERR_INPUT: no such array, with the names of those that there are;
+ * VG_ERR_UNSUPPORTED: more than one zone. */
+vg_status vg_cgns_take_solution(struct vg_input *in, const char *name,
+                                size_t n_point, double **value,
+                                struct vg_error *err);
+
 #endif

@@ -9,6 +9,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/hessian/point_values.h"
+#include "io/cgns/cgns.h"
+#include "io/foam/foam_read.h"
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu_read.h"
@@ -69,6 +72,19 @@ static void reduce(double *value, size_t n, int components, int which)
   }
 }
 
+/* Keep the part of a field of n components that the name asks for. */
+static vg_status take_part(const char *path, const char *name, size_t n_value,
+                           int n, int part, double *value, struct vg_error *err)
+{
+  if ((part < 0 && n > 1) || part > n)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: '%s' has %d components; give one of them as NAME:1 to "
+                   "NAME:%d, or the length as NAME:mag",
+                   path, name, n, n);
+  if (part >= 0) reduce(value, n_value, n, part);
+  return VG_OK;
+}
+
 /* Part of NAME:PART: 0 for "mag", the number of a component, -1: none. */
 static int part_of(const char *name, size_t *len)
 {
@@ -115,10 +131,10 @@ static int is_empty(struct vg_input *in)
   return !*point && !*cell;
 }
 
-static vg_status read_array(const char *path, struct vg_input *in,
-                            const char *name, struct vg_solution *s,
-                            struct vg_error *err)
+static vg_status read_array(const char *path, void *from, const char *name,
+                            struct vg_solution *s, struct vg_error *err)
 {
+  struct vg_input *in = from;
   size_t len;
   int part = vg_vtu_has_array(in, name) ? -1 : part_of(name, &len), n = 0;
   char *array = part < 0 ? strdup(name) : strndup(name, len);
@@ -135,23 +151,18 @@ static vg_status read_array(const char *path, struct vg_input *in,
   if (st < 0) return st;
   if (s->n_field) vg_mesh_release(&m);
   else vg_mesh_move(&s->m, &m);
-  if ((part < 0 && n > 1) || part > n) {
-    free(value);
-    return vg_fail(err, VG_ERR_INPUT,
-                   "%s: '%s' has %d components; give one of them as NAME:1 to "
-                   "NAME:%d, or the length as NAME:mag",
-                   path, name, n, n);
-  }
-  if (part >= 0) reduce(value, s->m.n_point, n, part);
-  return add_field(path, s, name, value, err);
+  st = take_part(path, name, s->m.n_point, n, part, value, err);
+  if (st >= 0) return add_field(path, s, name, value, err);
+  free(value);
+  return st;
 }
 
 /* --- .csv ----------------------------------------------------------------- */
 
-static vg_status read_column(const char *path, struct vg_input *in,
-                             const char *name, struct vg_solution *s,
-                             struct vg_error *err)
+static vg_status read_column(const char *path, void *from, const char *name,
+                             struct vg_solution *s, struct vg_error *err)
 {
+  struct vg_input *in = from;
   struct vg_error inner = VG_ERROR_INIT;
   char names[NAMES];
   double *value = NULL;
@@ -240,26 +251,27 @@ static vg_status read_mesh(const char *path, struct vg_solution *s,
 
 /* --- fields --------------------------------------------------------------- */
 
-typedef vg_status read_field(const char *path, struct vg_input *in,
-                             const char *name, struct vg_solution *s,
-                             struct vg_error *err);
+/* Reads a field; from: the file or case that the reader of the format opened.
+ */
+typedef vg_status read_field(const char *path, void *from, const char *name,
+                             struct vg_solution *s, struct vg_error *err);
 
-static vg_status read_fields(const char *path, struct vg_input *in,
-                             const char *names, read_field *read,
-                             struct vg_solution *s, struct vg_error *err)
+static vg_status read_fields(const char *path, void *from, const char *names,
+                             read_field *read, struct vg_solution *s,
+                             struct vg_error *err)
 {
   char *list = strdup(names ? names : ""), *rest = list, *name;
   vg_status st = VG_OK;
 
   if (!list) return vg_fail_memory(err, "the names of fields");
-  if (!*list) st = read(path, in, "", s, err);
+  if (!*list) st = read(path, from, "", s, err);
   while (st >= 0 && *list && (name = strsep(&rest, ","))) {
     if (s->n_field == VG_SOLUTION_FIELDS)
       st = vg_fail(err, VG_ERR_INPUT, "--field: more than %d fields",
                    VG_SOLUTION_FIELDS);
     else if (!*name)
       st = vg_fail(err, VG_ERR_INPUT, "--field: an empty name in '%s'", names);
-    else st = read(path, in, name, s, err);
+    else st = read(path, from, name, s, err);
   }
   free(list);
   return st;
@@ -326,6 +338,68 @@ done:
   return st;
 }
 
+/* --- CGNS ------------------------------------------------------------------
+ */
+
+static vg_status read_cgns_array(const char *path, void *from, const char *name,
+                                 struct vg_solution *s, struct vg_error *err)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  double *value = NULL;
+  vg_status st = vg_cgns_solution_parse(from, name, &m, &value, err);
+
+  if (st < 0) return st;
+  if (s->n_field) vg_mesh_release(&m);
+  else vg_mesh_move(&s->m, &m);
+  return add_field(path, s, name, value, err);
+}
+
+/* --- OpenFOAM ------------------------------------------------------------- */
+
+static vg_status read_volume_field(const char *path, void *from,
+                                   const char *name, struct vg_solution *s,
+                                   struct vg_error *err)
+{
+  const struct vg_foam_case *c = from;
+  const struct vg_mesh *m = &s->m;
+  const size_t n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  size_t len;
+  int part = part_of(name, &len), n;
+  char *file = strndup(name, len);
+  double *cell = NULL, *value = NULL;
+  vg_status st;
+
+  if (!file) return vg_fail_memory(err, "the name of a field");
+  VG_TRY(vg_foam_field_read(c, file, &n, &cell, err));
+  VG_TRY(take_part(path, name, n_cell, n, part, cell, err));
+  value = vg_alloc(m->n_point, sizeof *value);
+  st = value ? vg_point_values(m, cell, value, err)
+             : vg_fail_memory(err, "values at points");
+  if (st >= 0) {
+    st = add_field(path, s, name, value, err);
+    value = NULL;
+  }
+done:
+  free(file);
+  free(cell);
+  free(value);
+  return st;
+}
+
+static vg_status read_case(const char *path, const char *names,
+                           struct vg_solution *s, struct vg_error *err)
+{
+  struct vg_foam_case c = VG_FOAM_CASE_INIT;
+  vg_status st;
+
+  VG_TRY(vg_foam_case_read(path, &c, err));
+  vg_mesh_move(&s->m, &c.m);
+  st = read_fields(path, &c, names, read_volume_field, s, err);
+done:
+  vg_foam_case_release(&c);
+  return st;
+}
+
 vg_status vg_solution_read(const char *path, const char *names,
                            const char *mesh, struct vg_solution *s,
                            struct vg_error *err)
@@ -340,15 +414,20 @@ vg_status vg_solution_read(const char *path, const char *names,
       "--mesh is for a .csv; the mesh of %s is in the file or next "
       "to it",
       path);
+  if (vg_foam_is_case(path)) return read_case(path, names, s, err);
   if (vg_text_ends(path, ".sol") || vg_text_ends(path, ".solb"))
     return read_sol(path, names, s, err);
-  if (!vg_text_ends(path, ".vtu"))
-    return vg_fail(err, VG_ERR_INPUT,
-                   "%s: a solution is read from VTK's .vtu, Medit's .sol or "
-                   ".solb next to a mesh, or a .csv with --mesh",
-                   path);
+  if (!vg_text_ends(path, ".vtu") && !vg_text_ends(path, ".cgns"))
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: a solution is read from VTK's .vtu, .cgns, the folder "
+      "of an OpenFOAM case, Medit's .sol or .solb next to a mesh, or a "
+      ".csv with --mesh",
+      path);
   VG_TRY(vg_input_open(path, &in, err));
-  st = read_fields(path, &in, names, read_array, s, err);
+  st = read_fields(path, &in, names,
+                   vg_text_ends(path, ".cgns") ? read_cgns_array : read_array,
+                   s, err);
 done:
   vg_input_release(&in);
   return st;

@@ -27,9 +27,12 @@ struct vg_solution {
 
 /** Read fields of a solution and the mesh of their points.
  *
- * @param path    a .vtu with point arrays; Medit's .sol or .solb with one
- *                scalar, next to the mesh of the same name; or a .csv with a
- *                line for each point, as SU2's restart files
+ * @param path    a .vtu with point arrays; a .cgns with one zone and a solution
+ *                at its points; the folder of an OpenFOAM case or of
+ *                one of its times (values in the cells become values at the
+ *                points, core/hessian/point_values.h); Medit's .sol or .solb
+ *                with one scalar, next to the mesh of the same name; or a .csv
+ *                with a line for each point, as SU2's restart files
  * @param names   fields, separated by commas; of a vector, NAME:1, NAME:2, ...
  *                is a component and NAME:mag the length. NULL or "": the only
  *                one

@@ -100,6 +100,48 @@ vanguard mesh -q -p box --deck adapt.deck --sizes s.metric.vtu --write mesh \
   --out e
 exits 0
 
+# A case of OpenFOAM with values in the cells: the last time, or a given one,
+# in text and binary.
+vanguard mesh -q -p box --write mesh,foam-ascii --out c1
+exits 0
+same 1/box.mesh c1/box.mesh
+mkdir c1/box.openfoam/0 c1/box.openfoam/12
+awk 'is == "Vertices" && NF == 4 { x[++n] = $1; y[n] = $2; z[n] = $3 }
+  is == "Tetrahedra" && NF == 5 {
+    sx = sy = sz = 0
+    for (i = 1; i <= 4; i++) { sx += x[$i]; sy += y[$i]; sz += z[$i] }
+    t = (sqrt((sx / 4 + .2) ^ 2 + (sy / 4 + .2) ^ 2 + (sz / 4 + .2) ^ 2) - .8) / .05
+    e = exp(-2 * (t < 0 ? -t : t)); f = (1 - e) / (1 + e)
+    printf "%.12g\n", t < 0 ? -f : f
+  }
+  NF == 1 && !/^[0-9]/ { is = $1 }' 1/box.mesh >cells
+{
+  echo "FoamFile { version 2.0; format ascii; class volScalarField; object Ma; }"
+  echo "dimensions [0 0 0 0 0 0 0]; // none"
+  echo "internalField nonuniform List<scalar>"
+  wc -l <cells
+  echo "("
+  cat cells
+  echo ");"
+  echo "boundaryField { \".*\" { type zeroGradient; } }"
+} >c1/box.openfoam/12/Ma
+sed 's/nonuniform.*/uniform 1;/; 4,$d' c1/box.openfoam/12/Ma \
+  >c1/box.openfoam/0/Ma
+vanguard metric c1/box.openfoam/ --field Ma --cells 5000
+exits 0
+says out "  expected cells   5,0"
+exists c1/box.metric.vtu
+vanguard metric c1/box.openfoam/12 --field Ma --cells 5000 --out g.vtu
+exits 0
+same c1/box.metric.vtu g.vtu
+vanguard mesh -q -p box --write foam --out c2
+exits 0
+cp -r c1/box.openfoam/12 c2/box.openfoam
+gzip c2/box.openfoam/12/Ma c2/box.openfoam/constant/polyMesh/owner
+vanguard metric c2/box.openfoam --field Ma --cells 5000 --out h.vtu
+exits 0
+same g.vtu h.vtu
+
 # Bounds that leave no choice are noted.
 vanguard metric s.csv --field Ma --mesh 1/box.mesh --cells 100000 --h-min 0.1 \
   --out f.vtu
@@ -116,6 +158,11 @@ refused() {
   absent z.vtu z.solb z.meshb
 }
 refused "its point arrays are: U" s.vtu --cells 10 --field q --out z.vtu
+refused "it is linear" c1/box.openfoam/0 --cells 10 --field Ma --out z.vtu
+refused "there is no field 'q'; its files are: Ma" c1/box.openfoam --cells 10 \
+  --field q --out z.vtu
+refused "--mesh is for a .csv" c1/box.openfoam --cells 10 --field Ma \
+  --mesh 1/box.mesh --out z.vtu
 refused "'p' has values in the cells" s.vtu --cells 10 --field p --out z.vtu
 refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U --out z.vtu
 refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U:4 --out z.vtu
