@@ -173,7 +173,8 @@ static vg_status parse(const void *data, size_t size, size_t *n,
 
   *x = NULL;
   *v = NULL;
-  if (st >= 0) st = vg_vtu_values_parse(&in, "size", &m, &components, v, err);
+  if (st >= 0)
+    st = vg_vtu_values_parse(&in, "PointData", "size", &m, &components, v, err);
   if (st >= 0) assert_int_equal(components, 1);
   *n = m.n_point;
   *x = m.point;
@@ -283,9 +284,9 @@ static vg_status parse_metric(const struct metric_file *f, struct vg_mesh *m,
   *v = NULL;
   *m = (struct vg_mesh)VG_MESH_INIT;
   if (st >= 0) {
-    assert_true(vg_vtu_has_array(&in, "metric"));
-    assert_false(vg_vtu_has_array(&in, "size"));
-    st = vg_vtu_values_parse(&in, "metric", m, n, v, err);
+    assert_true(vg_vtu_has_array(&in, "PointData", "metric"));
+    assert_false(vg_vtu_has_array(&in, "PointData", "size"));
+    st = vg_vtu_values_parse(&in, "PointData", "metric", m, n, v, err);
   }
   vg_input_release(&in);
   return st;

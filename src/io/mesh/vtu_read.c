@@ -636,32 +636,66 @@ static vg_status put_cells(const struct file *f, const struct grid *g,
   return VG_OK;
 }
 
-static vg_status read_values(const struct file *f, const char *name,
-                             struct vg_mesh *m, int *components, double **value,
+static vg_status read_points(const struct file *f, struct vg_mesh *m,
                              struct vg_error *err)
 {
-  struct array point, a;
+  struct array point;
   vg_status st;
 
   VG_TRY(read_piece(f, &m->n_point, err));
   VG_TRY(find_array(f, "Points", NULL, &point, err));
   VG_TRY(check_array(f, "Points", &point, 3, 1, err));
-  VG_TRY(find_array(f, "PointData", name, &a, err));
+  m->point = vg_alloc(m->n_point, sizeof *m->point);
+  if (!m->point) return vg_fail_memory(err, "the points of a VTK file");
+  st = read_array(f, &point, 3 * m->n_point, m->point[0], err);
+done:
+  return st;
+}
+
+/* The n values of an array of "PointData" or "CellData". */
+static vg_status read_values(const struct file *f, const char *section,
+                             const char *name, size_t n, int *components,
+                             double **value, struct vg_error *err)
+{
+  struct array a;
+  vg_status st;
+
+  VG_TRY(find_array(f, section, name, &a, err));
   *components = a.components;
-  VG_TRY(check_array(f, "PointData", &a, a.components, 1, err));
+  VG_TRY(check_array(f, section, &a, a.components, 1, err));
   if (*components < 1 || *components > 9)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: the array '%s' has %d components; sizes have 1, a "
                    "metric 6 or 9",
                    f->in->path, name, *components);
-  m->point = vg_alloc(m->n_point, sizeof *m->point);
-  *value = vg_alloc(m->n_point, (size_t)*components * sizeof **value);
-  if (!m->point || !*value)
-    return vg_fail_memory(err, "the points of a VTK file");
-  VG_TRY(read_array(f, &point, 3 * m->n_point, m->point[0], err));
-  VG_TRY(read_any(f, &a, m->n_point * (size_t)*components, *value, err));
+  *value = vg_alloc(n, (size_t)*components * sizeof **value);
+  if (!*value) return vg_fail_memory(err, "the values of a VTK file");
+  st = read_any(f, &a, n * (size_t)*components, *value, err);
 done:
   return st;
+}
+
+/* Values of all cells [g->n] as those of the cells of the mesh, by kind. */
+static vg_status sort_values(const struct grid *g, const struct vg_mesh *m,
+                             int components, double **value,
+                             struct vg_error *err)
+{
+  const size_t n[4] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+  const size_t width = (size_t)components;
+  size_t at[4] = { 0, n[0], n[0] + n[1], n[0] + n[1] + n[2] };
+  double *sorted = vg_alloc(at[3] + n[3], width * sizeof *sorted);
+
+  if (!sorted) return vg_fail_memory(err, "the values of a VTK file");
+  for (size_t i = 0; i < g->n; i++) {
+    const int k = kind_of(g, i);
+
+    if (k < 4)
+      memcpy(sorted + width * at[k]++, *value + width * i,
+             width * sizeof *sorted);
+  }
+  free(*value);
+  *value = sorted;
+  return VG_OK;
 }
 
 /* Without the end tag, messages about the array that is missing or short would
@@ -680,13 +714,13 @@ static vg_status explain(const struct vg_input *in, vg_status st,
                  in->path, end);
 }
 
-int vg_vtu_has_array(struct vg_input *in, const char *name)
+int vg_vtu_has_array(struct vg_input *in, const char *section, const char *name)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct file f = { .in = in };
   const char *end;
 
-  return read_head(&f, &err) >= 0 && seek_array(&f, "PointData", name, &end);
+  return read_head(&f, &err) >= 0 && seek_array(&f, section, name, &end);
 }
 
 void vg_vtu_array_names(struct vg_input *in, const char *section, char *out,
@@ -715,23 +749,31 @@ void vg_vtu_array_names(struct vg_input *in, const char *section, char *out,
   }
 }
 
-vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,
-                              struct vg_mesh *out, int *components,
-                              double **value, struct vg_error *err)
+vg_status vg_vtu_values_parse(struct vg_input *in, const char *section,
+                              const char *name, struct vg_mesh *out,
+                              int *components, double **value,
+                              struct vg_error *err)
 {
   assert(in && name && out && components && value);
 
   struct file f = { .in = in };
   struct vg_mesh m = VG_MESH_INIT;
   struct grid g = { 0, 0, NULL, NULL, NULL };
+  const int in_cells = *section == 'C';
   double *own = NULL;
   int n = 0;
   vg_status st;
 
   VG_TRY(read_head(&f, err));
-  VG_TRY(read_values(&f, name, &m, &n, &own, err));
+  VG_TRY(read_points(&f, &m, err));
+  if (!in_cells)
+    VG_TRY(read_values(&f, section, name, m.n_point, &n, &own, err));
   VG_TRY(read_grid(&f, &g, err));
   VG_TRY(put_cells(&f, &g, &m, err));
+  if (in_cells) {
+    VG_TRY(read_values(&f, section, name, g.n, &n, &own, err));
+    VG_TRY(sort_values(&g, &m, n, &own, err));
+  }
   *out = m;
   *components = n;
   *value = own;

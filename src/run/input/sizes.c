@@ -166,8 +166,8 @@ static vg_status read_vtk(const char *path, struct values *v,
 
   v->is_vtk = 1;
   VG_TRY(vg_input_open(path, &in, err));
-  has_size = vg_vtu_has_array(&in, "size");
-  is_metric = vg_vtu_has_array(&in, "metric");
+  has_size = vg_vtu_has_array(&in, "PointData", "size");
+  is_metric = vg_vtu_has_array(&in, "PointData", "metric");
   if (has_size && is_metric) {
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s has both arrays 'size' and 'metric'; keep only one of "
@@ -175,8 +175,8 @@ static vg_status read_vtk(const char *path, struct values *v,
                  path);
     goto done;
   }
-  st = vg_vtu_values_parse(&in, is_metric ? "metric" : "size", &v->m,
-                           &v->components, &v->value, &inner);
+  st = vg_vtu_values_parse(&in, "PointData", is_metric ? "metric" : "size",
+                           &v->m, &v->components, &v->value, &inner);
   if (st >= 0) st = check_components(path, is_metric, v, &inner);
   if (st < 0)
     vg_fail(err, st, "%s%s", inner.text,

@@ -103,23 +103,22 @@ vg_status vg_solution_no_array(const char *path, const char *name,
                                struct vg_error *err)
 {
   char point[NAMES], cell[NAMES];
-  const char *found;
 
   vg_vtu_array_names(in, "PointData", point, sizeof point);
   vg_vtu_array_names(in, "CellData", cell, sizeof cell);
-  if (*name && (found = strstr(cell, name)) != NULL &&
-      (found == cell || found[-1] == ' ') &&
-      strchr(",", found[strlen(name)]) != NULL)
+  if (*name && vg_vtu_has_array(in, "CellData", name))
     return vg_fail(
       err, VG_ERR_INPUT,
       "%s: '%s' has values in the cells, but values at the points "
       "are needed: write point data, as foamToVTK does, or convert "
       "it with ParaView's filter Cell Data to Point Data",
       path, name);
-  return vg_fail(err, VG_ERR_INPUT, "%s: %s%s%s; its point arrays are: %s",
-                 path, *name ? "there is no point array '" : "give a field by ",
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: %s%s%s; its point arrays are: %s; its cell arrays are: "
+                 "%s",
+                 path, *name ? "there is no array '" : "give a field by ",
                  *name ? name : option, *name ? "'" : "",
-                 *point ? point : "none");
+                 *point ? point : "none", *cell ? cell : "none");
 }
 
 static int is_empty(struct vg_input *in)
@@ -131,28 +130,65 @@ static int is_empty(struct vg_input *in)
   return !*point && !*cell;
 }
 
+/* Add a field whose values, [number of cells], are in the cells. */
+static vg_status add_cell_field(const char *path, struct vg_solution *s,
+                                const char *name, const double *cell,
+                                struct vg_error *err)
+{
+  double *value = vg_alloc(s->m.n_point, sizeof *value);
+  vg_status st = value ? vg_point_values(&s->m, cell, value, err)
+                       : vg_fail_memory(err, "values at points");
+
+  if (st >= 0) return add_field(path, s, name, value, err);
+  free(value);
+  return st;
+}
+
+static size_t count_cells(const struct vg_mesh *m)
+{
+  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+}
+
+/* Where the field is: at the points, or in the cells. */
+static const char *section_of(struct vg_input *in, const char *name)
+{
+  return !vg_vtu_has_array(in, "PointData", name) &&
+             vg_vtu_has_array(in, "CellData", name)
+         ? "CellData"
+         : "PointData";
+}
+
+static int has_array(struct vg_input *in, const char *name)
+{
+  return vg_vtu_has_array(in, section_of(in, name), name);
+}
+
 static vg_status read_array(const char *path, void *from, const char *name,
                             struct vg_solution *s, struct vg_error *err)
 {
   struct vg_input *in = from;
   size_t len;
-  int part = vg_vtu_has_array(in, name) ? -1 : part_of(name, &len), n = 0;
+  int part = has_array(in, name) ? -1 : part_of(name, &len), n = 0;
   char *array = part < 0 ? strdup(name) : strndup(name, len);
+  const char *section = array ? section_of(in, array) : "";
   struct vg_mesh m = VG_MESH_INIT;
   double *value = NULL;
   vg_status st = VG_OK;
 
   if (!array) return vg_fail_memory(err, "the name of a field");
   /* A file that cannot be read has no arrays: the reader says why. */
-  st = vg_vtu_values_parse(in, array, &m, &n, &value, err);
-  if (st == VG_ERR_FORMAT && !vg_vtu_has_array(in, array) && !is_empty(in))
+  st = vg_vtu_values_parse(in, section, array, &m, &n, &value, err);
+  if (st == VG_ERR_FORMAT && !has_array(in, array) && !is_empty(in))
     st = vg_solution_no_array(path, name, "--field", in, err);
   free(array);
   if (st < 0) return st;
   if (s->n_field) vg_mesh_release(&m);
   else vg_mesh_move(&s->m, &m);
-  st = take_part(path, name, s->m.n_point, n, part, value, err);
-  if (st >= 0) return add_field(path, s, name, value, err);
+  st = take_part(path, name,
+                 *section == 'P' ? s->m.n_point : count_cells(&s->m), n, part,
+                 value, err);
+  if (st >= 0 && *section == 'P') return add_field(path, s, name, value, err);
+  if (st >= 0) st = add_cell_field(path, s, name, value, err);
   free(value);
   return st;
 }
@@ -360,29 +396,19 @@ static vg_status read_volume_field(const char *path, void *from,
                                    const char *name, struct vg_solution *s,
                                    struct vg_error *err)
 {
-  const struct vg_foam_case *c = from;
-  const struct vg_mesh *m = &s->m;
-  const size_t n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   size_t len;
   int part = part_of(name, &len), n;
   char *file = strndup(name, len);
-  double *cell = NULL, *value = NULL;
+  double *cell = NULL;
   vg_status st;
 
   if (!file) return vg_fail_memory(err, "the name of a field");
-  VG_TRY(vg_foam_field_read(c, file, &n, &cell, err));
-  VG_TRY(take_part(path, name, n_cell, n, part, cell, err));
-  value = vg_alloc(m->n_point, sizeof *value);
-  st = value ? vg_point_values(m, cell, value, err)
-             : vg_fail_memory(err, "values at points");
-  if (st >= 0) {
-    st = add_field(path, s, name, value, err);
-    value = NULL;
-  }
+  VG_TRY(vg_foam_field_read(from, file, &n, &cell, err));
+  VG_TRY(take_part(path, name, count_cells(&s->m), n, part, cell, err));
+  st = add_cell_field(path, s, name, cell, err);
 done:
   free(file);
   free(cell);
-  free(value);
   return st;
 }
 

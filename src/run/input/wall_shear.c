@@ -87,7 +87,7 @@ static vg_status choose_field(const struct vg_layer_settings *l,
 
   *out = *l->first_field ? l->first_field : NULL;
   for (int i = 0; i < N_USUAL && !*l->first_field; i++) {
-    if (!vg_vtu_has_array(in, usual[i])) continue;
+    if (!vg_vtu_has_array(in, "PointData", usual[i])) continue;
     if (*out)
       return vg_fail(err, VG_ERR_INPUT,
                      "%s has both point arrays '%s' and '%s': name the one to "
@@ -95,7 +95,7 @@ static vg_status choose_field(const struct vg_layer_settings *l,
                      path, *out, usual[i]);
     *out = usual[i];
   }
-  if (*out && vg_vtu_has_array(in, *out)) return VG_OK;
+  if (*out && vg_vtu_has_array(in, "PointData", *out)) return VG_OK;
   vg_vtu_array_names(in, "PointData", names, sizeof names);
   if (*out || *names)
     return vg_solution_no_array(path, *out ? *out : "", "--first-field", in,
@@ -299,7 +299,8 @@ static vg_status read_file(const struct vg_layer_settings *l, const char *path,
                    path);
   VG_TRY(vg_input_open(path, &in, err));
   VG_TRY(choose_field(l, path, &in, &field, err));
-  VG_TRY(vg_vtu_values_parse(&in, field, &m, &components, &value, err));
+  VG_TRY(
+    vg_vtu_values_parse(&in, "PointData", field, &m, &components, &value, err));
   VG_TRY(factor_of(l, path, field, &factor, err));
   VG_TRY(reduce(path, field, components, factor, m.n_point, value, err));
   w.cf = value;

@@ -127,6 +127,12 @@ awk 'is == "Vertices" && NF == 4 { x[++n] = $1; y[n] = $2; z[n] = $3 }
 } >c1/box.openfoam/12/Ma
 sed 's/nonuniform.*/uniform 1;/; 4,$d' c1/box.openfoam/12/Ma \
   >c1/box.openfoam/0/Ma
+# The same values as a cell array of a .vtu.
+awk '{ print } /Name="p"/ { while ((getline line <"cells") > 0) print line }' \
+  s.vtu >t.vtu
+vanguard metric t.vtu --field p --cells 5000
+exits 0
+says out "  expected cells   5,0"
 vanguard metric c1/box.openfoam/ --field Ma --cells 5000
 exits 0
 says out "  expected cells   5,0"
@@ -157,13 +163,12 @@ refused() {
   says err "$text"
   absent z.vtu z.solb z.meshb
 }
-refused "its point arrays are: U" s.vtu --cells 10 --field q --out z.vtu
+refused "its point arrays are: U; its cell arrays are: p" s.vtu --cells 10 --field q --out z.vtu
 refused "it is linear" c1/box.openfoam/0 --cells 10 --field Ma --out z.vtu
 refused "there is no field 'q'; its files are: Ma" c1/box.openfoam --cells 10 \
   --field q --out z.vtu
 refused "--mesh is for a .csv" c1/box.openfoam --cells 10 --field Ma \
   --mesh 1/box.mesh --out z.vtu
-refused "'p' has values in the cells" s.vtu --cells 10 --field p --out z.vtu
 refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U --out z.vtu
 refused "NAME:1 to NAME:3" s.vtu --cells 10 --field U:4 --out z.vtu
 refused "give a field by --field" s.vtu --cells 10 --out z.vtu
