@@ -62,6 +62,8 @@ vg_status vg_zone_rows_take(struct vg_settings *s, struct vg_cad_zones *z,
     vg_settings_row_default(VG_TABLE_ZONES, &row);
     memcpy(row.name, z->of[k].name, sizeof row.name);
     memcpy(row.seed, z->of[k].seed, sizeof row.seed);
+    row.kind = z->of[k].kind;
+    if (row.kind == VG_ZONE_SOLID) row.mesh = VG_ANSWER_YES;
     st = vg_settings_add(s, VG_TABLE_ZONES, &row, err);
   }
   free(z->of);
@@ -126,7 +128,8 @@ static vg_status take_row(const struct vg_settings *s, size_t i,
   if (!has_seed(r))
     return vg_fail(err, VG_ERR_INPUT,
                    "zones: the zone %s has no point; give x, y and z, or the "
-                   "name of a solid of the CAD file with cad_solids zones",
+                   "name of a zone of the file (solids of a CAD file with "
+                   "cad_solids zones, zones of a volume mesh)",
                    r->name);
   zone = vg_zone_map_at(z, r->seed);
   if (zone >= VG_ZONE_ON) return refuse_seed(r, zone, err);
