@@ -10,6 +10,9 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/copies.h"
 
+/* Triangles in a zone from which on a note tells that it is thin. */
+#define THIN_TRIANGLES 10000
+
 struct vg_zones {
   struct vg_zone_map map;
   double *hmax; /* [map.n] 0: none */
@@ -295,6 +298,34 @@ static void note_zones(const struct vg_boundary *b, const struct vg_zones *z)
   }
 }
 
+/* A zone between two close walls: the curves around it have short edges, and
+ * the triangles of both walls are as small. */
+static void note_thin(const struct vg_boundary *b, const struct vg_zones *z)
+{
+  const struct vg_mesh *m = z->map.surface;
+
+  for (size_t k = 0; k < z->map.n; k++) {
+    double area = 0, width, edge;
+    size_t n = 0;
+
+    for (size_t t = 0; t < m->n_tri; t++) {
+      const uint32_t *v = m->tri[t];
+
+      if (z->map.of[t] != k) continue;
+      area += vg_triangle_area(m->point[v[0]], m->point[v[1]], m->point[v[2]]);
+      n++;
+    }
+    width = 2 * z->map.volume[k] / area;
+    edge = sqrt(area / (double)n * (4 / sqrt(3)));
+    if (n < THIN_TRIANGLES || 4 * n < m->n_tri || edge > 2 * width) continue;
+    vg_note(b->notes,
+            "zone %s is thin, with a mean width of %.3g: %zu of the %zu "
+            "triangles look into it, with edges of %.3g, and the cells next to "
+            "them are as small; hmin, the smallest edge, makes them larger",
+            z->map.zone[k].name, width, n, m->n_tri, edge);
+  }
+}
+
 /* Removes the zones without cells. */
 static vg_status cut_zones(struct vg_boundary *b, struct vg_error *err)
 {
@@ -341,6 +372,7 @@ vg_status vg_boundary_add_zones(struct vg_boundary *b, struct vg_error *err)
     vg_zones_make(&b->read->settings, &b->surface, 1, &z->map, &z->hmax, err));
   add_sizes(b, z);
   note_zones(b, z);
+  note_thin(b, z);
   b->zones = z;
   z = NULL;
 done:

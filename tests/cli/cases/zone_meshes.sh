@@ -170,3 +170,11 @@ says err "occurs twice"
 vanguard partition -q o_two/two.b8.ugrid -n 4 --whole-zones wing
 exits 1
 says err "has no zone 'wing'"
+
+# --- a thin zone with fine triangles -----------------------------------------------
+
+mapfile -t thin < <(box plate .25 .25 .5 .5 .5 .01 60)
+duct thin "${thin[@]}"
+vanguard check thin.stl --flow internal --zone-interfaces plate
+says out "zone plate is thin, with a mean width of 0.0096"
+says out "hmin, the smallest edge, makes them larger"
