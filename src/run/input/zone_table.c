@@ -317,7 +317,7 @@ static void note_thin(const struct vg_boundary *b, const struct vg_zones *z)
     }
     width = 2 * z->map.volume[k] / area;
     edge = sqrt(area / (double)n * (4 / sqrt(3)));
-    if (n < THIN_TRIANGLES || 4 * n < m->n_tri || edge > 2 * width) continue;
+    if (n < THIN_TRIANGLES || 4 * n < m->n_tri || 3 * edge < width) continue;
     vg_note(b->notes,
             "zone %s is thin, with a mean width of %.3g: %zu of the %zu "
             "triangles look into it, with edges of %.3g, and the cells next to "
