@@ -196,8 +196,8 @@ static void test_interfaces(void **state)
     assert_int_equal(m.n_patch, 4);
     assert_true(m.patch[2].is_interface && m.patch[3].is_interface);
     assert_string_equal(m.patch[2].name, n ? "low" : "a_to_zone_2");
-    assert_string_equal(m.patch[3].name, n > 1 ? "" : "zone_2_to_zone_3");
-    assert_int_equal(m.patch[3].id, n ? (n > 1 ? 9 : 8) : 9);
+    assert_string_equal(m.patch[3].name, "zone_2_to_zone_3");
+    assert_int_equal(m.patch[3].id, n == 1 ? 8 : (int)(9 + n / 2));
     vg_mesh_release(&m);
   }
 }

@@ -55,9 +55,10 @@ static void take(struct faces *f, const uint32_t *node, int a, int b, int c,
   int is_same;
   const uint32_t t = vg_sheet_table_find(&f->sheets, v, &is_same);
   const uint64_t n_zone = f->m->n_zone;
+  const int has_name = t != UINT32_MAX && *f->m->sheet[f->m->sheet_of[t]].name;
 
   if (f->face)
-    f->face[f->n] = (struct face){ t != UINT32_MAX
+    f->face[f->n] = (struct face){ has_name
                                      ? f->m->sheet_of[t]
                                      : f->m->n_sheet + low * n_zone + high,
                                    { v[0], v[1], v[2] } };

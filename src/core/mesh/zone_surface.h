@@ -8,7 +8,7 @@
 
 /** Append the faces between zones to the boundary of m: patches with
  * is_interface, which have the names of their sheets, or A_to_B between the
- * zones A and B where no sheet has the face. Quadrilaterals become two
+ * zones A and B where no sheet with a name has the face. Quadrilaterals become two
  * triangles. Each face occurs once. Cells, sheets and zones stay.
  * VG_ERR_INPUT, with the name of the mesh: its boundary does not close the
  * cells. VG_ERR_UNSUPPORTED: no number for a patch. VG_ERR_MEMORY. m is

@@ -12,6 +12,7 @@
 #include "io/mesh/su2.h"
 #include "io/mesh/ugrid.h"
 #include "io/stream/sheet_file.h"
+#include "run/input/zone_table.h"
 #include "run/stages/output.h"
 
 /* Does STEM.sheets belong to a file in this form? Its points must have the
@@ -32,15 +33,11 @@ int vg_outputs_need_sheets(const struct vg_outputs *o)
   return needs;
 }
 
-/* Formats of zones alone need zones. */
-static vg_status check_zones(const struct vg_outputs *o,
-                             const struct vg_settings *s, struct vg_error *err)
+vg_status vg_outputs_check_zones(const struct vg_outputs *o,
+                                 const struct vg_mesh *surface,
+                                 struct vg_error *err)
 {
-  int wants = *s->zone_interfaces || s->cad.solids == VG_CAD_SOLIDS_ZONES;
-
-  for (size_t i = 0; i < s->n_patch; i++)
-    wants |= s->patch[i].role == VG_PATCH_INTERFACE;
-  for (size_t i = 0; i < o->n_item && !wants; i++)
+  for (size_t i = 0; i < o->n_item && !vg_mesh_has_interfaces(surface); i++)
     if (!strcmp(o->item[i], VG_SU2_ZONES))
       return vg_fail(err, VG_ERR_INPUT,
                      "write: " VG_SU2_ZONES " has a mesh for each zone, and "
@@ -54,13 +51,11 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   struct vg_error *err)
 {
   struct vg_foam_options options;
-  vg_status st;
   int wants = *s->sheets || *s->zone_interfaces,
       holds = vg_outputs_need_sheets(o);
 
   for (size_t i = 0; i < s->n_patch; i++)
     wants |= s->patch[i].role >= VG_PATCH_SHEET;
-  VG_TRY(check_zones(o, s, err));
   for (size_t i = 0; i < o->n_item; i++)
     holds |= vg_foam_word(o->item[i], &options) ||
              vg_format_holds_zones(o->item[i]);
@@ -68,8 +63,6 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
   return vg_fail(err, VG_ERR_INPUT,
                  "write: none of these formats holds sheets; add b8.ugrid, "
                  "cgns, msh, meshb, fluent.msh or foam");
-done:
-  return st;
 }
 
 /* Does this form hold cells, but neither sheets nor a STEM.sheets? */

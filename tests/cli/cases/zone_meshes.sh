@@ -46,12 +46,12 @@ same back.zones.su2 o_two/two.zones.su2
 absent back.sheets
 lacks out "has no zones"
 lacks out "are lost in"
+mv two.deck two.txt
 vanguard mesh two.stl --flow internal --quiet --baffles rot,in \
   --write zones.su2 --out no
 exits 1
 says err "no interface makes zones"
 absent no
-mv two.deck two.txt
 vanguard mesh two.stl --flow internal --quiet --sheets rot,in --hmax 0.12 \
   --write b8.ugrid --out one
 exits 0
@@ -143,6 +143,27 @@ exits 0
 says out "is an interface"
 grep -q '^interface .* far_to_rotor$' again/again_b8.ugrid.sheets ||
   fail "no interface of two zones"
+
+# A mesh of Gmsh.
+if command -v gmsh >/dev/null; then
+  printf '%s\n' 'SetFactory("OpenCASCADE");' 'Box(1) = {0,0,0,1,1,1};' \
+    'Box(2) = {0,0,1,1,1,1};' 'Box(3) = {0.3,0.3,0.3,0.3,0.3,0.3};' \
+    'BooleanFragments{ Volume{1:3}; Delete; }{}' \
+    'Physical Volume("upper") = {2};' 'Physical Volume("lower") = {4};' \
+    'Physical Volume("core") = {3};' 'Mesh.MeshSizeMax = 0.3;' \
+    'Mesh.SaveAll = 1;' >g.geo
+  gmsh -3 -v 0 -o g.msh g.geo >out 2>&1 || fail "gmsh"
+  vanguard mesh g.msh --quiet --write b8.ugrid,zones.su2 --out gmsh
+  exits 0
+  vanguard check gmsh/g.b8.ugrid
+  exits 0
+  says out "upper_to_lower"
+  for zone in " 1  .* upper" " 0.973 .* lower" " 0.027 .* core"; do
+    grep -q -- "$zone" out || fail "gmsh: no zone $zone"
+  done
+  head -5 gmsh/g.zones.su2 >out
+  says out "CONFIG_LIST= ( upper.cfg, lower.cfg, core.cfg )"
+else echo "gmsh is not installed: its mesh is omitted"; fi
 
 # --- partitions --------------------------------------------------------------------
 
