@@ -37,6 +37,18 @@ static inline uint32_t vg_order4(uint32_t v[4])
   return odd ^ vg_order2(&v[1], &v[2]);
 }
 
+/** The three lowest corners of a quadrilateral in its cyclic order, so that
+ * they turn like it: a triangle that stands for it in a key. */
+static inline void vg_quad_low_corners(const uint32_t quad[4], uint32_t v[3])
+{
+  int high = 0, n = 0;
+
+  for (int k = 1; k < 4; k++)
+    if (quad[k] > quad[high]) high = k;
+  for (int k = 0; k < 4; k++)
+    if (k != high) v[n++] = quad[k];
+}
+
 /** Key of the edge between two points, the same in both directions. */
 static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
 {

@@ -9,12 +9,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
+#include "core/mesh/double_faces.h"
+#include "core/mesh/zones.h"
 #include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
+#include "io/mesh/su2.h"
 #include "io/mesh/ugrid.h"
 #include "io/slices/slices.h"
 #include "io/slices/ugrid_slices.h"
@@ -23,12 +27,13 @@
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
+#include "run/settings/patch_names.h"
 #include "run/stages/output.h"
 
 /* First line of a .mapbc of this command, which may be overwritten. */
 #define TITLE "converted by Vanguard"
 
-enum { KEY_FORM = 500, KEY_MAPBC };
+enum { KEY_FORM = 500, KEY_MAPBC, KEY_DOUBLED };
 
 /* Cells of a slice, of which each thread has one in memory. */
 #define SLICE_CELLS 100000
@@ -61,13 +66,14 @@ static const struct held {
   { "cogsg", CELLS | BOUNDARY | IDS | WORDS | CODES },
   { VG_FOAM_SUFFIX, CELLS | BOUNDARY | QUADS | WORDS | TYPES },
   { "su2", CELLS | BOUNDARY | QUADS | WORDS },
+  { VG_SU2_ZONES, CELLS | BOUNDARY | QUADS | WORDS },
   { "vtu", CELLS },
 };
 /* All kinds of UGRID. */
 static const int held_by_ugrid = CELLS | BOUNDARY | QUADS | IDS;
 
 struct arguments {
-  const char *in, *out, *form, *mapbc;
+  const char *in, *out, *form, *mapbc, *doubled; /* NULL: not given */
   int json, quiet;
 };
 
@@ -230,6 +236,10 @@ static void note_patches(struct conversion *c)
 static void note_mesh(struct conversion *c)
 {
   const struct vg_mesh *m = &c->mesh;
+  const size_t n_held = vg_format_holds_zones(c->suffix)
+                        ? vg_mesh_interface_triangles(m)
+                        : 0,
+               n_lost = m->n_sheet_tri - n_held;
   struct vg_ugrid_kind kind;
 
   if (c->info.inner.n_face)
@@ -239,12 +249,12 @@ static void note_mesh(struct conversion *c)
     vg_note(&c->notes,
             ".%s holds surfaces: %zu triangles of sheets are omitted",
             c->suffix, m->n_sheet_tri);
-  else if (m->n_sheet && !c->sheets && !vg_format_holds_sheets(c->suffix))
+  else if (n_lost && !c->sheets && !vg_format_holds_sheets(c->suffix))
     vg_note(&c->notes,
             ".%s has no faces between cells: %zu triangles of sheets are lost",
-            c->suffix, m->n_sheet_tri);
+            c->suffix, n_lost);
   if (m->n_zone && !c->sheets &&
-      (!(c->what & CELLS) || !vg_format_holds_sheets(c->suffix)))
+      (!(c->what & CELLS) || !vg_format_holds_zones(c->suffix)))
     vg_note(&c->notes, ".%s has no zones: %zu are lost", c->suffix, m->n_zone);
   if (m->is_resorted)
     vg_note(&c->notes, "cells were sorted by zones, of which each is together");
@@ -358,7 +368,7 @@ static vg_status write_sheets(struct conversion *c, struct vg_error *err)
   const size_t before = c->outputs.n_file;
   vg_status st;
 
-  if (!(c->what & CELLS) || !c->n_cell || vg_format_holds_sheets(c->suffix) ||
+  if (!(c->what & CELLS) || !c->n_cell || vg_format_holds_zones(c->suffix) ||
       is_reordered(c))
     return VG_OK;
   st = vg_outputs_sheets(&c->outputs, m, m->n_point, c->n_cell, &c->notes, err);
@@ -381,16 +391,17 @@ static vg_status refuse_stem(const char *name, struct vg_error *err)
                  why.text);
 }
 
-/* Can the output be written from slices, in the same bytes? The writer of
+/* Can the output be written from slices, in the same bytes? Doubled interfaces
+ * have other points than the file. The writer of
  * .cogsg needs boundary points that come first, and that of .fluent.msh keeps
  * the faces between slices. */
 static int takes_slices(const struct conversion *c)
 {
   const size_t n = strlen(c->file), len = strlen(c->suffix);
 
-  return vg_slices_can_write(c->suffix) && strcmp(c->suffix, "cogsg") &&
-         strcmp(c->suffix, VG_FLUENT_SUFFIX) && n > len &&
-         !strcmp(c->file + n - len, c->suffix);
+  return !c->a->doubled && vg_slices_can_write(c->suffix) &&
+         strcmp(c->suffix, "cogsg") && strcmp(c->suffix, VG_FLUENT_SUFFIX) &&
+         n > len && !strcmp(c->file + n - len, c->suffix);
 }
 
 /* Read a mesh of which only slices are in memory, if file and output allow it:
@@ -426,6 +437,44 @@ done:
   return st;
 }
 
+/* The interfaces of the list become two patches each. */
+static vg_status double_interfaces(struct conversion *c, struct vg_error *err)
+{
+  struct vg_mesh *m = &c->mesh, list = VG_MESH_INIT;
+  uint8_t *on = vg_calloc(m->n_sheet, 1),
+          *is_doubled = vg_calloc(m->n_sheet, 1);
+  const size_t n_patch = m->n_patch, n_point = m->n_point;
+  vg_status st = VG_OK;
+
+  list.patch = vg_alloc(m->n_sheet, sizeof *list.patch);
+  if (!on || !is_doubled || !list.patch)
+    VG_TRY(vg_fail_memory(err, "the interfaces"));
+  for (size_t i = 0; i < m->n_sheet; i++)
+    if (m->sheet[i].is_interface) list.patch[list.n_patch++] = m->sheet[i];
+  if (!list.n_patch)
+    VG_TRY(vg_fail(err, VG_ERR_INPUT,
+                   "--double-interfaces: %s has no interfaces between zones",
+                   c->a->in));
+  VG_TRY(vg_patch_list_mark("double-interfaces", c->a->doubled, &list,
+                            list.n_patch, on, err));
+  for (size_t i = 0, k = 0; i < m->n_sheet; i++)
+    if (m->sheet[i].is_interface) is_doubled[i] = on[k++];
+  VG_TRY(vg_mesh_double_faces(m, is_doubled, err));
+  for (size_t i = n_patch; i < m->n_patch; i += 2)
+    vg_note(&c->notes,
+            "interface %d%s%s has two sides, the back is patch %d%s%s",
+            (int)m->patch[i].id, *m->patch[i].name ? " " : "", m->patch[i].name,
+            (int)m->patch[i + 1].id, *m->patch[i].name ? " " : "",
+            m->patch[i + 1].name);
+  vg_note(&c->notes, "%zu copies of points follow the others",
+          m->n_point - n_point);
+done:
+  free(on);
+  free(is_doubled);
+  free(list.patch);
+  return st;
+}
+
 static vg_status read_input(struct conversion *c, struct vg_error *err)
 {
   const struct vg_mesh *m = &c->mesh;
@@ -444,6 +493,7 @@ static vg_status read_input(struct conversion *c, struct vg_error *err)
             "%zu patches have no entry in the .mapbc, first patch %d",
             c->info.match.n_missing, c->info.match.first_missing);
   if (c->info.match.n_renamed) vg_note_renamed(&c->notes, &c->info.match);
+  if (c->a->doubled) st = double_interfaces(c, err);
 done:
   return st;
 }
@@ -595,6 +645,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   switch (key) {
   case KEY_FORM: a->form = arg; return 0;
   case KEY_MAPBC: a->mapbc = arg; return 0;
+  case KEY_DOUBLED: a->doubled = arg; return 0;
   case 'j': a->json = 1; return 0;
   case 'q': a->quiet = 1; return 0;
   case ARGP_KEY_ARG:
@@ -614,12 +665,17 @@ int vg_cmd_convert(int argc, char **argv)
   const struct argp_option options[] = {
     { "form", KEY_FORM, "WORD", 0,
       "Format of the output, as in the write list of 'vanguard mesh': "
-      "lb8.ugrid, msh, cgns, su2, vtu, meshb, fluent.msh, foam, foam-ascii, "
-      "stl, ... [default: by the suffix of OUT]",
+      "lb8.ugrid, msh, cgns, su2, zones.su2, vtu, meshb, fluent.msh, foam, "
+      "foam-ascii, stl, ... [default: by the suffix of OUT]",
       0 },
     { "mapbc", KEY_MAPBC, "FILE", 0,
       "Boundary conditions and names of the patches of IN [default: the "
       ".mapbc with the stem of IN, if there is one]",
+      0 },
+    { "double-interfaces", KEY_DOUBLED, "LIST", 0,
+      "Interfaces whose two sides become patches with points of their own, for "
+      "zones that move along each other: numbers, names or patterns such as "
+      "'rotor*'",
       0 },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
     { "quiet", 'q', NULL, 0, "Do not show progress", 0 },

@@ -24,11 +24,11 @@
 #include "run/report/report.h"
 #include "run/stages/output.h"
 
-enum { KEY_WEIGHTS = 500, KEY_ZONE_WEIGHTS, KEY_WRITE };
+enum { KEY_WEIGHTS = 500, KEY_ZONE_WEIGHTS, KEY_WHOLE_ZONES, KEY_WRITE };
 
 struct arguments {
   struct vg_cli_one one;
-  const char *out, *zone_weights; /* NULL: not given */
+  const char *out, *zone_weights, *whole_zones; /* NULL: not given */
   struct vg_solver_options options;
   struct vg_foam_options foam;
   int to_part, to_vtu, to_foam;
@@ -43,7 +43,8 @@ struct run {
   size_t n_cell;
   struct vg_solver_layers layers;
   unsigned char *is_wall;
-  double *zone_weight; /* [zones], or NULL */
+  double *zone_weight; /* [zones], or NULL; 0 until it is known */
+  uint8_t *is_whole;   /* [zones], or NULL */
   uint32_t *part;
   struct vg_solver_report report;
   char *stem;
@@ -124,6 +125,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'o': a->out = arg; return 0;
   case KEY_WEIGHTS: read_weights(a, arg, state); return 0;
   case KEY_ZONE_WEIGHTS: a->zone_weights = arg; return 0;
+  case KEY_WHOLE_ZONES: a->whole_zones = arg; return 0;
   case KEY_WRITE: read_forms(a, arg, state); return 0;
   default: break;
   }
@@ -227,14 +229,42 @@ done:
   return st;
 }
 
-/* The weight of one item of the list, "pipe=0.2" or "2=0.2"; removes it. */
+/* The zone with this name or number. */
+static vg_status find_zone(const struct run *r, const char *option,
+                           const char *item, size_t *zone, struct vg_error *err)
+{
+  const struct vg_mesh *m = &r->mesh;
+  size_t z = 0;
+
+  while (z < m->n_zone && strcmp(m->zone[z].name, item) != 0) z++;
+  if (z == m->n_zone && *item && strspn(item, "0123456789") == strlen(item))
+    for (z = 0; z < m->n_zone && m->zone[z].id != atoll(item);) z++;
+  *zone = z;
+  if (z < m->n_zone) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: %s has no zone '%s'; 'vanguard check' lists its zones",
+                 option, r->path, item);
+}
+
+static vg_status refuse_repeated(const struct run *r, const char *option,
+                                 size_t zone, struct vg_error *err)
+{
+  const struct vg_zone *z = &r->mesh.zone[zone];
+
+  return vg_fail(err, VG_ERR_USAGE,
+                 "%s: zone %d%s%s occurs twice; give it once", option,
+                 (int)z->id, *z->name ? " " : "", z->name);
+}
+
+/* The weight of one item of the list, "pipe=0.2" or "2=0.2", which is changed.
+ */
 static vg_status read_zone_weight(struct run *r, char *item,
                                   struct vg_error *err)
 {
-  const struct vg_mesh *m = &r->mesh;
   char *value = strrchr(item, '='), *end;
   double weight;
-  size_t z = 0;
+  size_t z;
+  vg_status st;
 
   if (!value || value == item)
     return vg_fail(err, VG_ERR_USAGE,
@@ -248,35 +278,58 @@ static vg_status read_zone_weight(struct run *r, char *item,
                    "--zone-weights: the weight of zone %s must be a number "
                    "from 0.001 to 1000, not '%s'",
                    item, value);
-  while (z < m->n_zone && strcmp(m->zone[z].name, item) != 0) z++;
-  if (z == m->n_zone && strspn(item, "0123456789") == strlen(item))
-    for (z = 0; z < m->n_zone && m->zone[z].id != atoll(item);) z++;
-  if (z == m->n_zone)
-    return vg_fail(err, VG_ERR_INPUT,
-                   "--zone-weights: %s has no zone %s; 'vanguard check' lists "
-                   "its zones",
-                   r->path, item);
-  r->zone_weight[z] = weight;
-  return VG_OK;
+  VG_TRY(find_zone(r, "--zone-weights", item, &z, err));
+  if (r->zone_weight[z] > 0) st = refuse_repeated(r, "--zone-weights", z, err);
+  else r->zone_weight[z] = weight;
+done:
+  return st;
 }
 
-/* Zones that are not listed have weight 1. */
-static vg_status read_zone_weights(struct run *r, struct vg_error *err)
+/* One item of the list of zones that stay whole. */
+static vg_status read_whole_zone(struct run *r, char *item,
+                                 struct vg_error *err)
 {
-  char *list, *rest, *item;
+  size_t z;
+  vg_status st;
+
+  VG_TRY(find_zone(r, "--whole-zones", item, &z, err));
+  if (r->is_whole[z]) st = refuse_repeated(r, "--whole-zones", z, err);
+  else r->is_whole[z] = 1;
+done:
+  return st;
+}
+
+static vg_status read_items(struct run *r, const char *text,
+                            vg_status (*take)(struct run *r, char *item,
+                                              struct vg_error *err),
+                            struct vg_error *err)
+{
+  char *list = strdup(text), *rest = list, *item;
+  vg_status st = list ? VG_OK : vg_fail_memory(err, "a list of zones");
+
+  while (st >= 0 && (item = strsep(&rest, ","))) st = take(r, item, err);
+  free(list);
+  return st;
+}
+
+/* Zones that are not listed have weight 1, and may be divided. */
+static vg_status read_zone_lists(struct run *r, struct vg_error *err)
+{
+  const struct arguments *a = r->a;
+  const size_t n = r->mesh.n_zone;
   vg_status st = VG_OK;
 
-  if (!r->a->zone_weights) return VG_OK;
-  r->zone_weight = vg_alloc(r->mesh.n_zone, sizeof *r->zone_weight);
-  rest = list = strdup(r->a->zone_weights);
-  if (!r->zone_weight || !list) {
-    free(list);
-    return vg_fail_memory(err, "the weights of the zones");
-  }
-  for (size_t z = 0; z < r->mesh.n_zone; z++) r->zone_weight[z] = 1;
-  while (st >= 0 && (item = strsep(&rest, ",")))
-    st = read_zone_weight(r, item, err);
-  free(list);
+  if (a->zone_weights) r->zone_weight = vg_calloc(n, sizeof *r->zone_weight);
+  if (a->whole_zones) r->is_whole = vg_calloc(n, 1);
+  if ((a->zone_weights && !r->zone_weight) || (a->whole_zones && !r->is_whole))
+    return vg_fail_memory(err, "the zones");
+  if (a->zone_weights)
+    VG_TRY(read_items(r, a->zone_weights, read_zone_weight, err));
+  if (a->whole_zones)
+    VG_TRY(read_items(r, a->whole_zones, read_whole_zone, err));
+  for (size_t z = 0; z < n && r->zone_weight; z++)
+    if (!(r->zone_weight[z] > 0)) r->zone_weight[z] = 1;
+done:
   return st;
 }
 
@@ -370,8 +423,9 @@ static vg_status run_all(struct run *r, struct vg_display *show,
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_mesh(r, err));
   VG_TRY(check_order(r, err));
-  VG_TRY(read_zone_weights(r, err));
+  VG_TRY(read_zone_lists(r, err));
   options.zone_weight = r->zone_weight;
+  options.is_whole = r->is_whole;
   vg_display_update(show, "partition", r->n_cell, 0);
   VG_TRY(vg_solver_part(&r->mesh, &r->layers, &options, path, r->part,
                         &r->report, err));
@@ -437,6 +491,7 @@ static void release(struct run *r)
   free(r->other);
   free(r->is_wall);
   free(r->zone_weight);
+  free(r->is_whole);
   free(r->part);
   free(r->stem);
   vg_outputs_release(&r->outputs);
@@ -467,6 +522,8 @@ int vg_cmd_partition(int argc, char **argv)
       "Factors on the work of the cells of zones, by name or number, as in "
       "rotor=1.5,2=0.3 [default 1 for all]",
       0 },
+    { "whole-zones", KEY_WHOLE_ZONES, "LIST", 0,
+      "Zones of which each is in a single partition, by name or number", 0 },
     { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
     { "quiet", 'q', NULL, 0, "Do not show progress", 0 },
     { 0 }

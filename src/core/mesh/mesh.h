@@ -56,6 +56,13 @@ struct vg_patch {
   char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 
+/** Is p a side of an interface whose sides are both parts of the boundary
+ * (core/mesh/double_faces.h)? The back follows its front. */
+static inline int vg_patch_is_sliding(const struct vg_patch *p)
+{
+  return p->is_interface && p->inner && !p->is_sheet;
+}
+
 /* Kinds of zones. */
 enum { VG_ZONE_FLUID, VG_ZONE_ROTATING, VG_ZONE_POROUS, VG_ZONE_SOLID };
 

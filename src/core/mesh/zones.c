@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "core/mesh/cell_faces.h"
 #include "core/mesh/sheets.h"
 
@@ -184,7 +185,8 @@ done:
 /* --- interfaces -------------------------------------------------------------
  */
 
-/* The triangles of sheets that are faces of a cell in zone z. */
+/* The triangles of sheets that are faces of a cell in zone z, or stand for its
+ * quadrilaterals. */
 static void meet(const struct vg_sheet_table *t, int kind, const uint32_t *node,
                  uint32_t z, uint32_t (*zone)[2])
 {
@@ -194,11 +196,12 @@ static void meet(const struct vg_sheet_table *t, int kind, const uint32_t *node,
     n += vg_sheet_table_on(t, node[k]);
   for (int f = 0; n > 2 && f < vg_cell_faces[kind].n_face; f++) {
     const unsigned char *face = vg_cell_faces[kind].face[f];
-    const uint32_t v[3] = { node[face[0]], node[face[1]], node[face[2]] };
-    uint32_t at;
+    const uint32_t quad[4] = { node[face[0]], node[face[1]], node[face[2]],
+                               node[face[3]] };
+    uint32_t v[3] = { quad[0], quad[1], quad[2] }, at;
     int is_same;
 
-    if (face[2] != face[3]) continue;
+    if (face[2] != face[3]) vg_quad_low_corners(quad, v);
     at = vg_sheet_table_find(t, v, &is_same);
     if (at != UINT32_MAX) zone[at][!is_same] = z;
   }
@@ -252,4 +255,13 @@ done:
   free(zone);
   free(is);
   return st;
+}
+
+size_t vg_mesh_interface_triangles(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t t = 0; t < m->n_sheet_tri; t++)
+    n += m->sheet[m->sheet_of[t]].is_interface != 0;
+  return n;
 }

@@ -52,15 +52,20 @@ uint64_t vg_mesh_zone_cells(const struct vg_mesh *m, size_t z);
 vg_status vg_mesh_sort_zones(struct vg_mesh *m, const uint32_t *of,
                              struct vg_error *err);
 
-/** Zones on both sides of the triangles of sheets.
+/** Zones on both sides of the triangles of sheets, which may also be those of
+ * vg_quad_low_corners (base/tri_key.h).
  * @param zone  out: [m->n_sheet_tri] before (in the direction of the normal)
- * and behind; UINT32_MAX: no cell is there O(n). VG_ERR_MEMORY. */
+ *              and behind; UINT32_MAX: no cell is there
+ * O(n). VG_ERR_MEMORY. */
 vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
                              struct vg_error *err);
 
 /** Set is_interface of the sheets of which every triangle lies between two
  * zones; others keep it. Nothing without zones. VG_ERR_MEMORY. */
 vg_status vg_mesh_mark_interfaces(struct vg_mesh *m, struct vg_error *err);
+
+/** Number of triangles of sheets that are interfaces. */
+size_t vg_mesh_interface_triangles(const struct vg_mesh *m);
 
 /** Remove the zones; cells stay. */
 void vg_mesh_drop_zones(struct vg_mesh *m);

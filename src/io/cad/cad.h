@@ -97,9 +97,10 @@ struct vg_cad_options {
     .chord = 2e-3, .angle = 15                                                 \
   } /* S15 */
 
-/** A solid as a zone. */
+/** A solid, or a zone of a volume mesh, as a zone. */
 struct vg_cad_zone {
   double seed[3]; /* a point in it */
+  int32_t kind;   /* VG_ZONE_... */
   char name[VG_NAME_MAX];
 };
 

@@ -33,7 +33,7 @@ static const struct zone_type {
 } wall = { 3, "wall" }, inlet = { 4, "pressure-inlet" },
   outlet = { 5, "pressure-outlet" }, symmetry = { 7, "symmetry" },
   far = { 9, "pressure-far-field" }, periodic = { 12, "periodic" },
-  shadow = { 8, "shadow" };
+  shadow = { 8, "shadow" }, interface = { 24, "interface" };
 
 /* 1: the patch with this number is the first one of a pair; 2: the second
  * one; 0: neither. */
@@ -54,6 +54,7 @@ static const struct zone_type *zone_type(const struct vg_fluent *f,
   int32_t code = p->bc;
 
   if (is_periodic) return is_periodic == 1 ? &periodic : &shadow;
+  if (vg_patch_is_sliding(p)) return &interface;
   if (code == VG_BC_NONE) code = vg_bc_to_usm3d(p->bc_fun3d);
   switch (code) {
   case 1: return &symmetry;

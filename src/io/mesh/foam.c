@@ -387,6 +387,16 @@ static void put_cyclic(struct vg_output *o, const struct vg_periodic *p,
                      p->centre[0], p->centre[1], p->centre[2]);
 }
 
+/* A side of an interface: solvers interpolate between both. */
+static void put_sliding(struct vg_output *o, const char *other)
+{
+  vg_output_format(o,
+                   "        neighbourPatch  %s;\n"
+                   "        transform       noOrdering;\n"
+                   "        matchTolerance  0.0001;\n",
+                   other);
+}
+
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
@@ -405,8 +415,8 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
                          &physical);
 
     if (thin && is_symmetry(w->m->patch + i)) type = physical = "empty";
-    if (pair) {
-      type = "cyclic";
+    if (pair || vg_patch_is_sliding(&w->m->patch[i])) {
+      type = pair ? "cyclic" : "cyclicAMI";
       physical = "";
     }
     vg_output_format(o, "    %s\n    {\n        type            %s;\n", name[i],
@@ -416,6 +426,9 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
     if (pair)
       put_cyclic(o, pair, other == pair->patch,
                  name[vg_mesh_find_patch(w->m, other)]);
+    else if (vg_patch_is_sliding(&w->m->patch[i]))
+      put_sliding(o,
+                  name[w->m->patch[i].inner == VG_INNER_FRONT ? i + 1 : i - 1]);
     vg_output_format(o,
                      "        nFaces          %zu;\n"
                      "        startFace       %llu;\n    }\n",

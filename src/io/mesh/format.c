@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/mesh/zone_surface.h"
 #include "core/mesh/zones.h"
 #include "io/cad/cad.h"
 #include "io/cgns/cgns.h"
@@ -133,7 +134,8 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
  *   KIND  of CAD files, which io/cad reads with its own options
  *   USES  INPUT: a project's surface may have the suffix; TESSELLATION: its
  *         triangles approximate a shape and are not meant for meshing; SHEETS:
- *         it holds faces between cells; ORDER: its patches have names, and
+ *         it holds faces between cells, and zones; ZONES: it holds
+ *         zones and their interfaces alone; ORDER: its patches have names, and
  *         numbers only by their order */
 #define READ_AND_WRITTEN(ROW)                                                  \
   ROW("stl", read_stl, vg_stl_write, NONE, INPUT | TESSELLATION | ORDER)       \
@@ -161,6 +163,7 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   ROW(VG_FLUENT_SUFFIX, NULL, vg_fluent_write, NONE, SHEETS)                   \
   ROW(VG_FOAM_SUFFIX, NULL, write_foam, NONE, SHEETS)                          \
   ROW("su2", NULL, vg_su2_write, NONE, 0)                                      \
+  ROW(VG_SU2_ZONES, NULL, vg_su2_write_zones, NONE, ZONES)                     \
   ROW("vtu", NULL, write_vtu, NONE, 0)
 #define READ_ONLY(ROW)                                                         \
   ROW("triq", read_tri, NULL, NONE, INPUT | TESSELLATION)                      \
@@ -176,7 +179,7 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   ROW(suffix, vg_ugrid_read, vg_ugrid_write, NONE, INPUT)
 #define ALL(ROW) READ_AND_WRITTEN(ROW) WRITTEN(ROW) READ_ONLY(ROW)
 
-enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4, ORDER = 8 };
+enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4, ORDER = 8, ZONES = 16 };
 
 static const struct format {
   const char *suffix;
@@ -277,6 +280,14 @@ int vg_format_holds_sheets(const char *suffix)
 {
   for (size_t i = 0; i < N_FORMAT; i++)
     if (!strcmp(formats[i].suffix, suffix)) return formats[i].uses & SHEETS;
+  return 0;
+}
+
+int vg_format_holds_zones(const char *suffix)
+{
+  for (size_t i = 0; i < N_FORMAT; i++)
+    if (!strcmp(formats[i].suffix, suffix))
+      return formats[i].uses & (SHEETS | ZONES);
   return 0;
 }
 
@@ -467,6 +478,30 @@ done:
   return st;
 }
 
+/* The zones of a volume mesh: its boundary gets their interfaces. */
+static vg_status take_zones(const char *path, struct vg_mesh *m,
+                            struct vg_cad_zones *out, struct vg_error *err)
+{
+  struct vg_cad_zone *of = vg_calloc(m->n_zone, sizeof *of);
+  vg_status st = of ? VG_OK : vg_fail_memory(err, "the zones");
+
+  VG_TRY(st);
+  VG_TRY(vg_mesh_add_interfaces(m, path, err));
+  for (size_t z = 0; z < m->n_zone; z++) {
+    if (!vg_mesh_zone_cells(m, z)) continue;
+    vg_mesh_zone_seed(m, z, of[out->n].seed);
+    of[out->n].kind = m->zone[z].kind;
+    if (*m->zone[z].name) memcpy(of[out->n].name, m->zone[z].name, VG_NAME_MAX);
+    else snprintf(of[out->n].name, VG_NAME_MAX, "zone_%d", (int)m->zone[z].id);
+    out->n++;
+  }
+  out->of = of;
+  of = NULL;
+done:
+  free(of);
+  return st;
+}
+
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,
                           struct vg_read_info *info, struct vg_error *err)
 {
@@ -475,6 +510,8 @@ vg_status vg_surface_read(const char *path, struct vg_mesh *out,
   vg_status st;
 
   VG_TRY(vg_mesh_read(path, &m, &found, err));
+  if (m.n_zone > 1 && found.zones && !found.zones->of)
+    VG_TRY(take_zones(path, &m, found.zones, err));
   if (found.n_cell) vg_mesh_keep_boundary(&m);
   vg_mesh_move(out, &m);
   if (info) *info = found;

@@ -3,8 +3,8 @@
  * in upper or lower case, optionally followed by ".gz". Read and written: .stl
  * .tri .obj .mesh .meshb .msh .cgns .ugrid (and .b8.ugrid, ...,
  * io/mesh/ugrid.h) .cogsg. Read only: .triq .front .surf and CAD (.step .stp
- * .iges .igs .brep, io/cad/cad.h). Written only: .fluent.msh, .su2, .vtu and
- * .openfoam (a folder, io/mesh/foam.h). */
+ * .iges .igs .brep, io/cad/cad.h). Written only: .fluent.msh, .su2, .zones.su2,
+ * .vtu and .openfoam (a folder, io/mesh/foam.h). */
 #ifndef VG_IO_MESH_FORMAT_H
 #define VG_IO_MESH_FORMAT_H
 
@@ -21,7 +21,8 @@ struct vg_read_info {
   struct vg_cad_model *model; /* in: empty; receives the model of a CAD file.
                                  NULL: the model is not kept */
   struct vg_cad_zones *zones; /* in: empty; receives the zones of a CAD file,
-                                 see vg_cad_read; may be NULL */
+                                 see vg_cad_read, or of a volume mesh in
+                                 vg_surface_read; may be NULL */
   /* in: file with boundary conditions; NULL or "": STEM.mapbc, unless the mesh
    * is a surface and Vanguard wrote that file */
   const char *mapbc;
@@ -63,6 +64,9 @@ int vg_format_holds_cells(const char *path);
 /** Returns 1 if the format, given by its suffix, holds sheets
  * (core/mesh/sheets.h). */
 int vg_format_holds_sheets(const char *suffix);
+
+/** Does a format, by its suffix, hold zones? */
+int vg_format_holds_zones(const char *suffix);
 
 /** *out: the file with the sheets of a .ugrid, in the same folder
  * (io/stream/sheet_file.h); "" without such a file, and for other formats. To

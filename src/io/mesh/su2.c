@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/zone_meshes.h"
 #include "io/mesh/su2_put.h"
 
 #define REAL_WIDTH 25 /* vg_format_real writes at most 24 characters */
@@ -265,5 +266,84 @@ vg_status vg_su2_write(const char *path, const struct vg_mesh *m,
 done:
   vg_output_release(&out);
   vg_su2_release(&s);
+  return st;
+}
+
+/* --- a block for each zone ------------------------------------------------ */
+
+static void put_words(struct vg_output *out, const char *key, size_t n,
+                      const char (*word)[VG_PATCH_WORD], const char *end)
+{
+  if (!n) return;
+  vg_output_format(out, "%% %s= ( ", key);
+  for (size_t i = 0; i < n; i++)
+    vg_output_format(out, "%s%s%s", i ? ", " : "", word[i], end);
+  vg_output_text(out, " )\n");
+}
+
+/* The lines that SU2's configuration needs, as comments. */
+static vg_status put_zones_head(struct vg_output *out,
+                                const struct vg_zone_parts *p,
+                                struct vg_error *err)
+{
+  const struct vg_mesh patches = { .n_patch = p->n_patch, .patch = p->patch };
+  char(*word)[VG_PATCH_WORD] = vg_patch_words(&patches, VG_PATCH_WORD_MOST);
+  char(*zone)[VG_PATCH_WORD] = vg_zone_words(p->m, VG_PATCH_WORD_MOST);
+  vg_status st = word && zone ? VG_OK
+                              : vg_fail_memory(err, "the names of the markers");
+
+  VG_TRY(st);
+  vg_output_text(out, "% Zones of a mesh, by Vanguard. Lines for the "
+                      "configuration of SU2:\n% MULTIZONE_MESH= YES\n");
+  put_words(out, "CONFIG_LIST", p->m->n_zone,
+            (const char(*)[VG_PATCH_WORD])zone, ".cfg");
+  put_words(out, "MARKER_ZONE_INTERFACE", 2 * p->n_pair,
+            (const char(*)[VG_PATCH_WORD])word + p->m->n_patch, "");
+  vg_output_format(out, "NZONE= %zu\n", p->m->n_zone);
+done:
+  free(word);
+  free(zone);
+  return st;
+}
+
+static vg_status put_zone(struct vg_output *out, const char *path,
+                          struct vg_zone_parts *p, size_t z,
+                          struct vg_error *err)
+{
+  struct vg_mesh part = VG_MESH_INIT;
+  struct vg_su2 s;
+  vg_status st;
+
+  VG_TRY(vg_zone_part(p, z, &part, err));
+  VG_TRY(vg_su2_plan(path, &part, &s, err));
+  vg_output_format(out, "IZONE= %zu\n", z + 1);
+  vg_su2_put(out, &s);
+  vg_su2_release(&s);
+done:
+  vg_mesh_release(&part);
+  return st;
+}
+
+vg_status vg_su2_write_zones(const char *path, const struct vg_mesh *m,
+                             struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_zone_parts p = VG_ZONE_PARTS_INIT;
+  vg_status st;
+
+  if (!m->n_zone)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the mesh has no zones, of which this format has one "
+                   "mesh each; write su2",
+                   path);
+  VG_TRY(vg_zone_parts_new(m, &p, err));
+  VG_TRY(vg_output_open(path, &out, err));
+  VG_TRY(put_zones_head(&out, &p, err));
+  for (size_t z = 0; z < m->n_zone; z++)
+    VG_TRY(put_zone(&out, path, &p, z, err));
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  vg_zone_parts_release(&p);
   return st;
 }

@@ -18,4 +18,15 @@
 vg_status vg_su2_write(const char *path, const struct vg_mesh *m,
                        struct vg_error *err);
 
+#define VG_SU2_ZONES "zones.su2" /* suffix of vg_su2_write_zones */
+
+/** Write the zones of m as meshes of their own, a block IZONE for each
+ * (core/mesh/zone_meshes.h): both sides of interfaces are markers, whose points
+ * each zone has for itself. Comments at the beginning have the lines for SU2's
+ * configuration: the pairs of MARKER_ZONE_INTERFACE and the order of the zones.
+ * Memory: that of the largest zone. VG_ERR_INPUT: no zones; otherwise as
+ * vg_su2_write. */
+vg_status vg_su2_write_zones(const char *path, const struct vg_mesh *m,
+                             struct vg_error *err);
+
 #endif

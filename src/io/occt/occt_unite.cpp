@@ -545,8 +545,9 @@ std::string separate_group(const Solids &solids, const Group &group,
   return "";
 }
 
-/* The names of the solids; none occurs twice. */
-std::vector<std::string> zone_names(const Model &model)
+/* The names of the solids; none occurs twice. A note tells of solids that have
+ * got another name than in the file. */
+std::vector<std::string> zone_names(const Model &model, const Talk &talk)
 {
   std::vector<std::string> out;
 
@@ -557,6 +558,10 @@ std::vector<std::string> zone_names(const Model &model)
     for (size_t k = 2; std::find(out.begin(), out.end(), name) != out.end();
          k++)
       name = format("%s_%zu", own.empty() ? "solid" : own.c_str(), k);
+    if (!own.empty() && name != own)
+      talk.note(format("several solids have the name %s: solid %zu is the zone "
+                       "%s",
+                       own.c_str(), i + 1, name.c_str()));
     out.push_back(name);
   }
   return out;
@@ -604,7 +609,7 @@ void separate(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {
   const Solids solids = Shells(model).solids();
   const std::vector<double> list = tolerances(ask, model);
-  const std::vector<std::string> names = zone_names(model);
+  const std::vector<std::string> names = zone_names(model, talk);
   size_t n = 0;
 
   talk.stage("dividing the faces of its solids");

@@ -29,6 +29,9 @@ struct vg_solver_options {
   /* [zones of the mesh] > 0: factor on the work of their cells; NULL: 1. Only
    * for meshes in one piece. */
   const double *zone_weight;
+  /* [zones of the mesh] 1: all its cells are in one partition; NULL: none. Only
+   * for meshes in one piece. */
+  const uint8_t *is_whole;
 };
 #define VG_SOLVER_OPTIONS_INIT                                                 \
   {                                                                            \

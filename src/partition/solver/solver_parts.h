@@ -40,6 +40,8 @@ struct vg_unit_options {
   size_t cluster;       /* Cells outside layers per cluster; 1: no clusters. */
   const double *weight; /* [VG_SOLVER_KINDS] */
   const double *cell_weight; /* [n_cell] Instead of weight; may be NULL. */
+  const uint32_t *together;  /* [n_cell] First cell of a zone that is one unit;
+                                UINT32_MAX: none. May be NULL. */
 };
 
 /** Makes the units, in the order of their first cells. */

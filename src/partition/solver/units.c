@@ -232,6 +232,18 @@ static void join_hexahedra(struct work *w)
     if (w->o->is_wall[m->quad_patch[i]]) climb(w, w->l->boundary[m->n_tri + i]);
 }
 
+/* Zones that are one unit each. */
+static void join_zones(struct work *w)
+{
+  const uint32_t *to = w->o->together;
+
+  for (uint32_t cell = 0; to && cell < w->l->n_cell; cell++) {
+    if (to[cell] == UINT32_MAX) continue;
+    w->stands[cell] = 1;
+    vg_union(w->up, to[cell], cell);
+  }
+}
+
 static void join_all(struct work *w)
 {
   const struct vg_cell_links *l = w->l;
@@ -250,6 +262,7 @@ static void join_all(struct work *w)
        w->o->is_known && !w->u->has_loose && cell < l->end_pri; cell++)
     stand(w, cell);
   join_hexahedra(w);
+  join_zones(w);
 }
 
 /* --- clusters ------------------------------------------------------------ */
@@ -336,6 +349,8 @@ static vg_status weigh(struct work *w, struct vg_error *err)
                               : w->o->weight[kind_of(w->l, cell)];
     if (w->stands[cell]) n[u->of[cell]]++;
   }
+  for (uint32_t cell = 0; w->o->together && cell < w->l->n_cell; cell++)
+    if (w->o->together[cell] != UINT32_MAX) n[u->of[cell]] = 1; /* no stack */
   for (size_t k = 0; k < u->n_unit; k++) {
     u->alone[k] = !n[k];
     if (n[k] < 2) continue;

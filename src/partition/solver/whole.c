@@ -56,6 +56,37 @@ static vg_status weigh_zones(const struct vg_mesh *m,
   return VG_OK;
 }
 
+/* The first cells of the zones that stay whole; NULL if none does. */
+static vg_status keep_zones(const struct vg_mesh *m,
+                            const struct vg_solver_options *o, uint32_t **first,
+                            struct vg_error *err)
+{
+  const size_t n[VG_SOLVER_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+  uint32_t *of_zone, cell = 0;
+
+  *first = NULL;
+  if (!o->is_whole || !m->n_zone) return VG_OK;
+  *first = vg_alloc(n[0] + n[1] + n[2] + n[3], sizeof **first);
+  of_zone = vg_alloc(m->n_zone, sizeof *of_zone);
+  if (!*first || !of_zone) {
+    free(of_zone);
+    return vg_fail_memory(err, "the zones of the cells");
+  }
+  memset(of_zone, 0xff, m->n_zone * sizeof *of_zone);
+  for (int k = 0; k < VG_SOLVER_KINDS; k++) {
+    size_t z = 0;
+    uint64_t end = 0;
+
+    for (size_t c = 0; c < n[k]; c++, cell++) {
+      vg_mesh_zone_walk(m, k, c, &z, &end);
+      if (o->is_whole[z] && of_zone[z] == UINT32_MAX) of_zone[z] = cell;
+      (*first)[cell] = of_zone[z];
+    }
+  }
+  free(of_zone);
+  return VG_OK;
+}
+
 /* The partition that contains most of a cell's neighbours: its own unless
  * another one is better, the lowest of equals. */
 static uint32_t better(const struct smoothing *s, uint32_t cell)
@@ -200,10 +231,13 @@ vg_status vg_solver_part(const struct vg_mesh *m,
   struct vg_cell_links l = VG_CELL_LINKS_INIT;
   struct vg_units u = VG_UNITS_INIT;
   double *weight = NULL;
+  uint32_t *together = NULL;
   vg_status st;
 
   VG_TRY(weigh_zones(m, o, &weight, err));
+  VG_TRY(keep_zones(m, o, &together, err));
   uo.cell_weight = weight;
+  uo.together = together;
   VG_TRY(vg_cell_links_build(&l, m, 0, name, err));
   VG_TRY(vg_units_make(&l, &uo, &u, err));
   VG_TRY(part_units(&l, &u, o, part, &r, err));
@@ -216,6 +250,7 @@ vg_status vg_solver_part(const struct vg_mesh *m,
   *report = r;
 done:
   free(weight);
+  free(together);
   vg_units_release(&u);
   vg_cell_links_release(&l);
   return st;

@@ -50,7 +50,8 @@ int vg_read_has_solid_zones(const struct vg_read *r)
 const char *vg_read_keeps_triangles(const struct vg_read *r)
 {
   if (r->settings.n_periodic) return "periodic patches";
-  return wants_inner(&r->settings) || vg_read_has_solid_zones(r)
+  return wants_inner(&r->settings) || vg_read_has_solid_zones(r) ||
+             vg_mesh_has_interfaces(&r->surface)
          ? "inner surfaces"
          : NULL;
 }
@@ -76,6 +77,7 @@ const char *vg_inner_source(const struct vg_settings *s, char *text,
     if (from[i].is)
       n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
                             from[i].name, from[i].list);
+  if (!n) snprintf(text, size, "zones of the file");
   return text;
 }
 
@@ -132,7 +134,8 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
   VG_TRY(give_list(m, "zone_interfaces", s->zone_interfaces, VG_PATCH_INTERFACE,
                    on, role, from, err));
   for (size_t i = 0; i < m->n_patch; i++) on[i] = m->patch[i].is_interface != 0;
-  VG_TRY(give(m, on, VG_PATCH_INTERFACE, "cad_solids", role, from, err));
+  VG_TRY(
+    give(m, on, VG_PATCH_INTERFACE, "the zones of the file", role, from, err));
   for (size_t i = 0; i < s->n_patch && st >= 0; i++) {
     const size_t at = vg_mesh_find_patch(m, s->patch[i].id);
 

@@ -380,6 +380,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
     .mapbc = r->settings.mapbc
   };
   const char *path = r->files.surface;
+  size_t n_zone;
   vg_status st = name_mapbc(r, err);
 
   if (st >= 0 && r->is_section) return vg_read_section(r, show, err);
@@ -388,6 +389,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   cad.user = r->notes;
   if (st < 0) return st;
   st = vg_surface_read(path, &r->surface, &info, err);
+  n_zone = zones.n;
   st = vg_zone_rows_take(&r->settings, &zones, st, err);
   /* The message of the library has less detail. */
   if (st == VG_ERR_STOPPED) return vg_display_stopped(show, err);
@@ -397,9 +399,10 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   r->side = side_of(info.format);
   if (info.n_cell)
     vg_note(r->notes,
-            "%s is a volume mesh: its boundary is used as the surface, and "
+            "%s is a volume mesh: its boundary%s is used as the surface, and "
             "its %zu cells are ignored",
-            path, info.n_cell);
+            path, n_zone ? " with the faces between its zones" : "",
+            info.n_cell);
   if (info.turned.face)
     vg_note(r->notes,
             "%s: %zu boundary faces pointed out of their cells; their "

@@ -10,6 +10,9 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/copies.h"
 
+/* Triangles in a zone from which on a note tells that it is thin. */
+#define THIN_TRIANGLES 10000
+
 struct vg_zones {
   struct vg_zone_map map;
   double *hmax; /* [map.n] 0: none */
@@ -62,6 +65,8 @@ vg_status vg_zone_rows_take(struct vg_settings *s, struct vg_cad_zones *z,
     vg_settings_row_default(VG_TABLE_ZONES, &row);
     memcpy(row.name, z->of[k].name, sizeof row.name);
     memcpy(row.seed, z->of[k].seed, sizeof row.seed);
+    row.kind = z->of[k].kind;
+    if (row.kind == VG_ZONE_SOLID) row.mesh = VG_ANSWER_YES;
     st = vg_settings_add(s, VG_TABLE_ZONES, &row, err);
   }
   free(z->of);
@@ -126,7 +131,8 @@ static vg_status take_row(const struct vg_settings *s, size_t i,
   if (!has_seed(r))
     return vg_fail(err, VG_ERR_INPUT,
                    "zones: the zone %s has no point; give x, y and z, or the "
-                   "name of a solid of the CAD file with cad_solids zones",
+                   "name of a zone of the file (solids of a CAD file with "
+                   "cad_solids zones, zones of a volume mesh)",
                    r->name);
   zone = vg_zone_map_at(z, r->seed);
   if (zone >= VG_ZONE_ON) return refuse_seed(r, zone, err);
@@ -292,6 +298,34 @@ static void note_zones(const struct vg_boundary *b, const struct vg_zones *z)
   }
 }
 
+/* A zone between two close walls: the curves around it have short edges, and
+ * the triangles of both walls are as small. */
+static void note_thin(const struct vg_boundary *b, const struct vg_zones *z)
+{
+  const struct vg_mesh *m = z->map.surface;
+
+  for (size_t k = 0; k < z->map.n; k++) {
+    double area = 0, width, edge;
+    size_t n = 0;
+
+    for (size_t t = 0; t < m->n_tri; t++) {
+      const uint32_t *v = m->tri[t];
+
+      if (z->map.of[t] != k) continue;
+      area += vg_triangle_area(m->point[v[0]], m->point[v[1]], m->point[v[2]]);
+      n++;
+    }
+    width = 2 * z->map.volume[k] / area;
+    edge = sqrt(area / (double)n * (4 / sqrt(3)));
+    if (n < THIN_TRIANGLES || 4 * n < m->n_tri || 3 * edge < width) continue;
+    vg_note(b->notes,
+            "zone %s is thin, with a mean width of %.3g: %zu of the %zu "
+            "triangles look into it, with edges of %.3g, and the cells next to "
+            "them are as small; hmin, the smallest edge, makes them larger",
+            z->map.zone[k].name, width, n, m->n_tri, edge);
+  }
+}
+
 /* Removes the zones without cells. */
 static vg_status cut_zones(struct vg_boundary *b, struct vg_error *err)
 {
@@ -338,6 +372,7 @@ vg_status vg_boundary_add_zones(struct vg_boundary *b, struct vg_error *err)
     vg_zones_make(&b->read->settings, &b->surface, 1, &z->map, &z->hmax, err));
   add_sizes(b, z);
   note_zones(b, z);
+  note_thin(b, z);
   b->zones = z;
   z = NULL;
 done:

@@ -23,8 +23,8 @@ static const struct form {
   { "ugrid", 51, 28, 42, 24 },      { "cogsg", 24, 16, 0, 41 },
   { "vtu", 24, 49, 57, 49 },        { "pvtu", 28, 49, 57, 0 },
   { "meshb", 28, 20, 28, 16 },      { "mesh", 56, 30, 44, 26 },
-  { "su2", 85, 43, 58, 26 },        { "msh", 32, 40, 56, 32 },
-  { "cgns", 24, 16, 24, 12 },
+  { "su2", 85, 43, 58, 26 },        { "zones.su2", 85, 43, 58, 26 },
+  { "msh", 32, 40, 56, 32 },        { "cgns", 24, 16, 24, 12 },
 };
 
 /* A Fluent file has one line per face, with the hexadecimal numbers of its

@@ -65,7 +65,8 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
                    "write: unknown format '%s'; known formats are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
                    "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
-                   "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb",
+                   "lb8.ugrid, ugrid, cgns, su2, zones.su2, msh, fluent.msh, "
+                   "meshb",
                    to);
   ++*n;
   return VG_OK;

@@ -312,9 +312,9 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
 {
   const struct vg_mesh *m = &p->boundary.surface;
   struct vg_mapbc bc = VG_MAPBC_INIT;
-  vg_status st;
+  vg_status st = vg_outputs_check_zones(o, m, err);
 
-  if (!hits_input(o, p, "mapbc")) return VG_OK;
+  if (st < 0 || !hits_input(o, p, "mapbc")) return st;
   st = vg_mapbc_read(p->read.files.mapbc, &bc, err);
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
     int found = m->patch[i].is_sheet; /* no part of the boundary */

@@ -75,6 +75,12 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   const struct vg_settings *s,
                                   struct vg_error *err);
 
+/** VG_ERR_INPUT if a format of the list needs zones, and the final surface has
+ * no interfaces. */
+vg_status vg_outputs_check_zones(const struct vg_outputs *o,
+                                 const struct vg_mesh *surface,
+                                 struct vg_error *err);
+
 /** Notes for the formats of the write list that lose the sheets of m. */
 void vg_outputs_note_sheets(const struct vg_outputs *o, const struct vg_mesh *m,
                             struct vg_notes *notes);

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "io/periodic/periodic_cfg.h"
+#include "io/mesh/su2.h"
 #include "io/mesh/ugrid.h"
 #include "io/slices/slices.h"
 #include "run/stages/output.h"
@@ -73,7 +74,8 @@ vg_status vg_outputs_periodic(struct vg_outputs *o,
   vg_status st;
 
   for (size_t i = 0; i < o->n_item; i++)
-    needs |= vg_ugrid_kind(o->item[i], &kind) || !strcmp(o->item[i], "su2");
+    needs |= vg_ugrid_kind(o->item[i], &kind) || !strcmp(o->item[i], "su2") ||
+             !strcmp(o->item[i], VG_SU2_ZONES);
   if (!needs || !l->links.n || o->is_guest) return VG_OK;
   st = vg_outputs_new(o, VG_PERIODIC_SUFFIX, &path, err);
   if (st >= 0)

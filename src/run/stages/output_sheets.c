@@ -6,10 +6,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/mesh/zones.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
+#include "io/mesh/su2.h"
 #include "io/mesh/ugrid.h"
 #include "io/stream/sheet_file.h"
+#include "run/input/zone_table.h"
 #include "run/stages/output.h"
 
 /* Does STEM.sheets belong to a file in this form? Its points must have the
@@ -30,6 +33,19 @@ int vg_outputs_need_sheets(const struct vg_outputs *o)
   return needs;
 }
 
+vg_status vg_outputs_check_zones(const struct vg_outputs *o,
+                                 const struct vg_mesh *surface,
+                                 struct vg_error *err)
+{
+  for (size_t i = 0; i < o->n_item && !vg_mesh_has_interfaces(surface); i++)
+    if (!strcmp(o->item[i], VG_SU2_ZONES))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "write: " VG_SU2_ZONES " has a mesh for each zone, and "
+                     "no interface makes zones; write su2, or name the "
+                     "interfaces in zone_interfaces");
+  return VG_OK;
+}
+
 vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
                                   const struct vg_settings *s,
                                   struct vg_error *err)
@@ -42,7 +58,7 @@ vg_status vg_outputs_check_sheets(const struct vg_outputs *o,
     wants |= s->patch[i].role >= VG_PATCH_SHEET;
   for (size_t i = 0; i < o->n_item; i++)
     holds |= vg_foam_word(o->item[i], &options) ||
-             vg_format_holds_sheets(o->item[i]);
+             vg_format_holds_zones(o->item[i]);
   if (!wants || holds || !o->n_item) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "write: none of these formats holds sheets; add b8.ugrid, "
@@ -63,15 +79,20 @@ void vg_outputs_note_sheets(const struct vg_outputs *o, const struct vg_mesh *m,
                             struct vg_notes *notes)
 {
   for (size_t i = 0; i < o->n_item && m->n_zone; i++)
-    if (loses_sheets(o->item[i]))
+    if (loses_sheets(o->item[i]) && !vg_format_holds_zones(o->item[i]))
       vg_note(notes, ".%s has no zones: all cells are in one zone in it",
               o->item[i]);
-  for (size_t i = 0; i < o->n_item && m->n_sheet_tri; i++)
-    if (loses_sheets(o->item[i]))
+  for (size_t i = 0; i < o->n_item; i++) {
+    const size_t n = m->n_sheet_tri - (vg_format_holds_zones(o->item[i])
+                                         ? vg_mesh_interface_triangles(m)
+                                         : 0);
+
+    if (n && loses_sheets(o->item[i]))
       vg_note(notes,
               ".%s has no faces between cells: %zu triangles of sheets are "
               "not in it",
-              o->item[i], m->n_sheet_tri);
+              o->item[i], n);
+  }
 }
 
 /* Whether STEM.sheets exists, and whether Vanguard wrote it. */

@@ -130,6 +130,17 @@ vanguard mesh -q -p peg.brep -d none.deck --cad-solids zones --hmax 1 --out none
 exits 1
 says err "the zone heater has no point"
 absent none
+# Solids of one name.
+if command -v gmsh >/dev/null; then
+  printf '%s\n' 'SetFactory("OpenCASCADE");' 'Box(1) = {0,0,0,1,1,1};' \
+    'Box(2) = {0,0,1,1,1,1};' >two.geo
+  gmsh -0 -v 0 -o made.step two.geo >out 2>&1 || fail "gmsh"
+  sed "s/'Open CASCADE STEP translator [^']*'/'wall'/g" made.step >two.step
+  vanguard check -q two.step --cad-solids zones
+  exits 0
+  says out "several solids have the name wall: solid 2 is the zone wall_2"
+  says out "wall_to_wall_2 is an interface"
+else echo "gmsh is not installed: solids of one name are omitted"; fi
 vanguard mesh -q -p "$cad/inside.brep" --cad-solids zones --hmax 1 --out none
 exits 1
 says err "overlap, so that a place would be in two zones"

@@ -349,7 +349,7 @@ if command -v jq >/dev/null; then
 fi
 vanguard partition -q demo/exchanger.b8.ugrid -n 4 --zone-weights wall=0.01
 exits 1
-says err "has no zone wall"
+says err "has no zone 'wall'"
 vanguard partition -q demo/exchanger.b8.ugrid -n 4 --zone-weights pipe=0
 exits 2
 says err "must be a number from 0.001 to 1000"
