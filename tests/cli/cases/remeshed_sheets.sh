@@ -97,3 +97,49 @@ duct inside "in 1 1  0.4 0.4 0.5  0.2 0 0  0 0.2 0" \
 vanguard mesh inside.stl --flow external --sheets in,out $remeshed
 exits 1
 says err "patch 7 in, an inner surface, is not in the fluid"
+
+# A wake that ends beyond the generated farfield is cut there, around a whole
+# body and half of one; without remeshing, and as a whole beyond it, it is
+# refused.
+duct far "wake 60 2  0.5 -0.3 0.45  30 0 0  0 0.9 0.03"
+awk '/^solid w3/ { out = 1 } !out { print } /^endsolid/ { out = 0 }' far.stl \
+  >cutoff.stl
+far="--flow external --sheets wake --farfield-lengths 5 --surface-size 0.25"
+for threads in 1 3; do
+  # shellcheck disable=SC2086
+  vanguard mesh far.stl $far --remesh-surface yes --quiet --threads $threads \
+    --decompose octree --leaf-cells 4000 --write b8.ugrid --out far$threads
+  exits 0
+  says out "were removed"
+  vanguard check far$threads/far.b8.ugrid
+  exits 0
+  says out "valid"
+done
+same far1/far.b8.ugrid far3/far.b8.ugrid
+same far1/far.sheets far3/far.sheets
+# shellcheck disable=SC2086
+vanguard mesh far.stl $far --remesh-surface yes --farfield box --quiet \
+  --write b8.ugrid --out box
+exits 0
+vanguard check box/far.b8.ugrid
+exits 0
+says out "valid"
+# shellcheck disable=SC2086
+vanguard mesh cutoff.stl $far --half y --remesh-surface yes --quiet \
+  --write b8.ugrid --out cutoff
+exits 0
+vanguard check cutoff/cutoff.b8.ugrid
+exits 0
+says out "valid"
+for name in "far.stl" "cutoff.stl --half y"; do
+  # shellcheck disable=SC2086
+  vanguard mesh $name $far --out refused
+  exits 1
+done
+says err "patch 6 wake, an inner surface, crosses the generated boundary at"
+says err "set remesh_surface to yes, which cuts it there"
+duct beyond "wake 4 2  40 -0.3 0.45  30 0 0  0 0.9 0.03"
+# shellcheck disable=SC2086
+vanguard mesh beyond.stl $far --remesh-surface yes --out refused
+exits 1
+says err "patch 7 wake, an inner surface, lies beyond the generated boundary as"
