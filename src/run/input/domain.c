@@ -541,7 +541,7 @@ static vg_status complete_by(struct vg_boundary *b, struct vg_farfield *far,
   struct vg_error why = VG_ERROR_INIT, other = VG_ERROR_INIT;
   int is_cut = 0;
   vg_status st = vg_domain_complete(&b->surface, far, sizing, &b->domain, &why);
-  const int again = st == VG_ERR_GEOMETRY && far->sheets;
+  const int again = st == VG_ERR_GEOMETRY && b->domain.is_crossed;
 
   if (again) {
     far->sheets = NULL;
