@@ -131,12 +131,12 @@ exits 0
 vanguard check cutoff/cutoff.b8.ugrid
 exits 0
 says out "valid"
-for name in "far.stl" "cutoff.stl --half y"; do
+for name in "cutoff.stl --half y" "far.stl"; do
   # shellcheck disable=SC2086
   vanguard mesh $name $far --out refused
   exits 1
 done
-says err "patch 6 wake, an inner surface, crosses the generated boundary at"
+says err "patch 7 wake, an inner surface, crosses the generated boundary at"
 says err "set remesh_surface to yes, which cuts it there"
 duct beyond "wake 4 2  40 -0.3 0.45  30 0 0  0 0.9 0.03"
 # shellcheck disable=SC2086
