@@ -94,7 +94,7 @@ static vg_status copy_patches(const struct vg_mesh *from, struct vg_mesh *to,
 /* The walls and the pieces of inner surfaces, with points of their own. n_wall:
  * out, triangles of walls. */
 static vg_status gather(const struct vg_boundary *b, const struct vg_mesh *all,
-                        struct vg_mesh *out, size_t *n_wall,
+                        double near, struct vg_mesh *out, size_t *n_wall,
                         struct vg_error *err)
 {
   struct vg_junctions j = VG_JUNCTIONS_INIT;
@@ -112,13 +112,12 @@ static vg_status gather(const struct vg_boundary *b, const struct vg_mesh *all,
     vg_junction_piece_release(&p);
   }
   VG_TRY(vg_mesh_copy(&walls, &b->surface, err));
-  VG_TRY(vg_junction_snap(&walls, &sheets.m, SNAP * vg_boundary_length(b),
-                          &n_moved, err));
+  VG_TRY(vg_junction_snap(&walls, &sheets.m, near, &n_moved, err));
   if (n_moved)
     vg_note(b->notes,
             "%zu points of inner surfaces were moved by at most %.3g onto "
             "sharp edges next to them",
-            n_moved, SNAP * vg_boundary_length(b));
+            n_moved, near);
   *n_wall = walls.n_tri;
   VG_TRY(vg_grow_mesh(&to, &walls, err));
   VG_TRY(vg_grow_mesh(&to, &sheets.m, err));
@@ -211,7 +210,7 @@ done:
 }
 
 static vg_status cut(struct vg_boundary *b, struct vg_mesh *all, int crosses,
-                     const struct vg_junction_half *half,
+                     const struct vg_junction_half *half, double near,
                      struct vg_display *show, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, show };
@@ -221,7 +220,7 @@ static vg_status cut(struct vg_boundary *b, struct vg_mesh *all, int crosses,
   double lost = 0;
   vg_status st;
 
-  VG_TRY(gather(b, all, &m, &n_wall, err));
+  VG_TRY(gather(b, all, near, &m, &n_wall, err));
   if (crosses) st = vg_imprint(&m, n_wall, &stop, &n_wall, err);
   if (st == VG_BLOCKED)
     st = vg_fail(err, VG_ERR_GEOMETRY,
@@ -231,6 +230,7 @@ static vg_status cut(struct vg_boundary *b, struct vg_mesh *all, int crosses,
   if (half->axis >= 0) VG_TRY(vg_junction_clip(&m, n_wall, half, &lost, err));
   VG_TRY(vg_surface_merge_points(&m, err));
   n_wall = vg_junction_drop_flat(&m, n_wall);
+  VG_TRY(vg_junction_mend(&m, &n_wall, near, err));
   VG_TRY(vg_junction_drop_solid(&m, n_wall, &lost, err));
   VG_TRY(check_patches(b, &m, n_wall, err));
   VG_TRY(put(b, &m, n_wall, err));
@@ -365,7 +365,7 @@ vg_status vg_boundary_imprint(struct vg_boundary *b, int *is_cut,
   VG_TRY(vg_inner_orient_all(b, &all, err));
   VG_TRY(find_crossings(b, &all, show, &crosses, NULL, err));
   if (!crosses && !reaches_beyond(b, &half)) goto done;
-  VG_TRY(cut(b, &all, crosses, &half, show, err));
+  VG_TRY(cut(b, &all, crosses, &half, SNAP * vg_boundary_length(b), show, err));
   *is_cut = 1;
 done:
   vg_mesh_release(&all);
@@ -515,6 +515,15 @@ done:
   return st;
 }
 
+static double length_of(const struct vg_mesh *m)
+{
+  double lo[3], hi[3], most = 0;
+
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++) most = fmax(most, hi[k] - lo[k]);
+  return most;
+}
+
 vg_status vg_boundary_cut_outer(struct vg_boundary *b,
                                 const struct vg_sizing *sizing, double spacing,
                                 int *is_cut, struct vg_display *show,
@@ -540,7 +549,7 @@ vg_status vg_boundary_cut_outer(struct vg_boundary *b,
     VG_TRY(refuse_beyond(b, "crosses the generated boundary", first.at,
                          all.tri_patch[t], lo, hi, err));
   }
-  VG_TRY(cut(&o.view, &all, 1, &none, show, err));
+  VG_TRY(cut(&o.view, &all, 1, &none, SNAP * length_of(&o.body), show, err));
   VG_TRY(join_outer(b, &o.body, &o.view.surface, err));
   vg_mesh_move(&b->inner, &o.view.inner);
   st = remesh_outer(b, sizing, spacing, show, err);

@@ -143,3 +143,37 @@ duct beyond "wake 4 2  40 -0.3 0.45  30 0 0  0 0.9 0.03"
 vanguard mesh beyond.stl $far --remesh-surface yes --out refused
 exits 1
 says err "patch 7 wake, an inner surface, lies beyond the generated boundary as"
+
+# Points of a smooth wall within rounding of a sheet: the equator of a sphere in
+# its plane, and meridians in that of another sheet.
+duct plates "lie 8 8  -1 -1 0  2 0 0  0 2 0" "up 7 9  -1 0 -1  2 0 0  0 0 2"
+{
+  awk 'function corner(i, j, t, p) {
+      t = 3.14159265358979 * i / 12
+      if (i % 12 == 0) j = 0
+      p = 6.28318530717959 * (j % 24) / 24
+      print "vertex", sprintf("%.17g %.17g %.17g", sin(t) * cos(p) / 2,
+        sin(t) * sin(p) / 2, cos(t) / 2 + (i == 6 ? 1e-9 : 0))
+    }
+    function facet(a, b, c, d, e, f) {
+      print "facet normal 0 0 0\nouter loop"
+      corner(a, b); corner(c, d); corner(e, f)
+      print "endloop\nendfacet"
+    }
+    BEGIN {
+      print "solid ball"
+      for (i = 0; i < 12; i++) for (j = 0; j < 24; j++) {
+        if (i) facet(i, j, i + 1, j + 1, i, j + 1)
+        if (i < 11) facet(i, i ? j : 0, i + 1, j, i + 1, j + 1)
+      }
+      print "endsolid ball"
+    }'
+  awk '/^solid lie/ { on = 1 } on { print }' plates.stl
+} >equator.stl
+vanguard mesh equator.stl --flow external --farfield-lengths 3 --quiet \
+  --sheets lie,up --remesh-surface yes --surface-size 0.12 \
+  --write b8.ugrid --out equator
+exits 0
+vanguard check equator/equator.b8.ugrid
+exits 0
+says out "valid"
