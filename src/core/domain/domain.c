@@ -35,6 +35,7 @@ struct domain {
                      above). */
   double at;
   struct vg_border open; /* Directed as the closing surface runs along them. */
+  int is_crossed;        /* as in vg_domain_report */
 };
 
 static void measure(struct domain *d)
@@ -400,6 +401,7 @@ static vg_status add_symmetry(struct domain *d, struct vg_border *border,
     VG_TRY(vg_add_slits(&d->m, d->farfield->sheets, &plane, border, err));
   st = vg_planar_patch(&d->m, border->n, (const uint32_t(*)[2])border->edge,
                        &law, patch, &inner);
+  d->is_crossed = st == VG_ERR_GEOMETRY && d->farfield->sheets;
   if (st < 0)
     st = vg_fail(err, st, "symmetry plane %c = %.9g: %s", "xyz"[d->axis],
                  d -> at, inner.text);
@@ -500,7 +502,9 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
                    "no body to put a farfield around");
   VG_TRY(vg_mesh_copy(&d.m, surface, err));
   measure(&d);
-  VG_TRY(build(&d, err));
+  st = build(&d, err);
+  if (report) report->is_crossed = d.is_crossed;
+  VG_TRY(st);
   if (report) {
     report->added_farfield = farfield->kind != VG_FARFIELD_NONE;
     report->added_symmetry = d.axis >= 0;

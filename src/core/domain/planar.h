@@ -113,6 +113,8 @@ struct vg_domain_report {
   int symmetry_axis; /* 0 x, 1 y, 2 z; -1 none. */
   double symmetry_at;
   size_t n_added_tri;
+  int is_crossed; /* 1, with a failure: the symmetry plane cannot be made with
+                     the edges of sheets, which may cross its rim. */
 };
 
 /* Of the body length: open edges of a given half model this near to a plane are

@@ -140,6 +140,17 @@ vg_status vg_junction_clip(struct vg_mesh *m, size_t n_wall,
                            const struct vg_junction_half *half, double *lost,
                            struct vg_error *err);
 
+/** Join points and edges at most `most` apart at the common curves of walls and
+ * sheets that were cut along each other: they are due to rounding, such as
+ * points of a smooth wall in the plane of a sheet.
+ *
+ * @param m       walls, and from *n_wall on sheets, of other patches; points of
+ *                the same place are one point
+ * @param n_wall  in/out
+ * VG_ERR_MEMORY: m is not usable. O(n log n). */
+vg_status vg_junction_mend(struct vg_mesh *m, size_t *n_wall, double most,
+                           struct vg_error *err);
+
 /** Drop triangles with two equal corners, which rounding leaves. Returns the
  * number of those of walls, the first n_wall ones, that are left. */
 size_t vg_junction_drop_flat(struct vg_mesh *m, size_t n_wall);

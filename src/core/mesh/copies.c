@@ -170,11 +170,25 @@ done:
   return st;
 }
 
-/* The corners of triangle t by their first copies, ascending. Returns the
- * parity of the order. */
-static uint32_t corners_of(const struct copies *c, size_t t, uint32_t v[3])
+/* Faces: triangles, then the four triangles of the corners of each
+ * quadrilateral, which has the same ones from behind, reversed. */
+static size_t face_count(const struct vg_mesh *m)
 {
-  for (int k = 0; k < 3; k++) v[k] = c->first[c->m->tri[t][k]];
+  return m->n_tri + 4 * m->n_quad;
+}
+
+static uint32_t corner_of(const struct vg_mesh *m, size_t f, int k)
+{
+  const size_t q = f - m->n_tri;
+
+  return f < m->n_tri ? m->tri[f][k] : m->quad[q / 4][(q + (size_t)k) % 4];
+}
+
+/* The corners of face f by their first copies, ascending. Returns the parity of
+ * the order. */
+static uint32_t corners_of(const struct copies *c, size_t f, uint32_t v[3])
+{
+  for (int k = 0; k < 3; k++) v[k] = c->first[corner_of(c->m, f, k)];
   return vg_order3(v);
 }
 
@@ -188,12 +202,12 @@ static int is_opposite(const struct copies *c, size_t t, size_t u)
 
 static vg_status mark_sides(struct copies *c, struct vg_error *err)
 {
-  const struct vg_mesh *m = c->m;
+  const size_t n = face_count(c->m);
   struct vg_table table;
 
-  if (vg_table_init(&table, m->n_tri))
+  if (vg_table_init(&table, n))
     return vg_fail_memory(err, "the triangles of the boundary");
-  for (uint32_t t = 0; t < m->n_tri; t++) {
+  for (uint32_t t = 0; t < n; t++) {
     uint32_t v[3], *at;
 
     corners_of(c, t, v);
@@ -203,7 +217,8 @@ static vg_status mark_sides(struct copies *c, struct vg_error *err)
       *at = t;
       continue;
     }
-    for (int k = 0; k < 3; k++) c->on[m->tri[t][k]] = c->on[m->tri[*at][k]] = 2;
+    for (int k = 0; k < 3; k++)
+      c->on[corner_of(c->m, t, k)] = c->on[corner_of(c->m, *at, k)] = 2;
   }
   vg_table_release(&table);
   return VG_OK;
@@ -220,8 +235,8 @@ vg_status vg_mesh_copies(const struct vg_mesh *m, uint64_t *n,
   c.first = vg_alloc(m->n_point, sizeof *c.first);
   c.on = vg_calloc(m->n_point, 1);
   if (!c.first || !c.on) VG_TRY(vg_fail_memory(err, "the table of points"));
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3; k++) c.on[m->tri[t][k]] = 1;
+  for (size_t f = 0; f < face_count(m); f++)
+    for (int k = 0; k < 3; k++) c.on[corner_of(m, f, k)] = 1;
   VG_TRY(vg_mesh_first_points(m, c.on, c.first, err));
   for (uint32_t p = 0; p < m->n_point; p++) c.n += c.first[p] != p;
   if (c.n) VG_TRY(mark_sides(&c, err));

@@ -46,14 +46,14 @@ vg_status vg_mesh_joined_points(const struct vg_mesh *m, uint32_t **same,
                                 struct vg_error *err);
 
 /** Count the points that have the coordinates of an earlier one, both being
- * corners of triangles that lie back to back on another triangle: the sides of
+ * corners of faces that lie back to back on another face: the sides of
  * an inner surface, between which there is nothing. Other points that coincide
  * are defects.
  *
- * @param m  triangles of a boundary; quadrilaterals and cells are ignored. Node
+ * @param m  triangles and quadrilaterals of a boundary; cells are ignored. Node
  *           indices are in range
  * @param n  out, unchanged on failure
- * O(n_point + n_tri). VG_ERR_MEMORY. */
+ * O(n_point + n_tri + n_quad). VG_ERR_MEMORY. */
 vg_status vg_mesh_copies(const struct vg_mesh *m, uint64_t *n,
                          struct vg_error *err);
 

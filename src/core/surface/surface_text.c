@@ -126,8 +126,7 @@ static const char *remedy(const struct vg_mesh *m, const struct vg_defect *d)
     if (is_inner(m, d->face[0]) || is_inner(m, d->face[1]))
       return "these faces cross, overlap or touch; set remesh_surface to yes, "
              "which cuts the inner surface there, or let it end there with "
-             "common edges, or move it away; a farfield on which it ends must "
-             "be a patch of the surface file";
+             "common edges, or move it away";
     return "these faces cross, overlap or touch; unite the bodies, or move "
            "the surfaces apart there";
   case VG_DEFECT_SHELL: return shell_text(d);

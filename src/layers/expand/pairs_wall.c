@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/copies.h"
 #include "core/mesh/edges.h"
 #include "layers/expand/matching.h"
 #include "layers/expand/pairs.h"
@@ -36,7 +37,9 @@ enum { UNTESTED, GOOD, BAD };
 struct walls {
   struct vg_expand *e;
   const struct vg_mesh *surface;
-  size_t n; /* Number of wall faces, which come first. */
+  size_t n;        /* Number of wall faces, which come first. */
+  uint32_t *other; /* [n] face on the other side of an inner surface;
+                      VG_NO_INDEX: none. NULL: no inner surfaces. */
   struct vg_edges edges;
   uint16_t *weight; /* [edges.n] 0: no pair. */
   uint8_t *state;   /* [edges.n] of the test. */
@@ -48,8 +51,8 @@ static const double *foot_of(const struct walls *w, uint32_t column)
 }
 
 /* Whether the corners of two neighbouring faces are four, with different roots
- * and without marks, on one patch, and with enough levels. Inner surfaces have
- * no pairs, since those of both sides would differ. */
+ * and without marks, on one patch, and with enough levels. Sheets have no
+ * pairs: their triangles are faces between the cells of both sides. */
 static int may_pair(const struct walls *w, const size_t pair[2])
 {
   const struct vg_columns *c = w->e->columns;
@@ -62,7 +65,7 @@ static int may_pair(const struct walls *w, const size_t pair[2])
   for (int k = 0; k < 9; k++) n_common += f[k / 3] == g[k % 3];
   if (n_common != 2 ||
       patch[c->face_tri[pair[0]]] != patch[c->face_tri[pair[1]]] ||
-      w->surface->patch[patch[c->face_tri[pair[0]]]].inner != VG_INNER_NOT)
+      w->surface->patch[patch[c->face_tri[pair[0]]]].is_sheet)
     return 0;
   vg_pair_ring(c, pair, q);
   if (c->column[q[0]].root == c->column[q[2]].root) return 0;
@@ -151,6 +154,38 @@ static uint16_t weight_of(const struct walls *w, const size_t pair[2])
                     WEIGHT_LONGEST * share_of_common(x));
 }
 
+static int32_t side_of(const struct walls *w, size_t face)
+{
+  const uint32_t t = w->e->columns->face_tri[face];
+
+  return w->surface->patch[w->surface->tri_patch[t]].inner;
+}
+
+/* The faces on the other side of a pair on an inner surface. Returns 0 if the
+ * pair is on none. */
+static int across(const struct walls *w, const size_t pair[2], size_t back[2])
+{
+  if (side_of(w, pair[0]) == VG_INNER_NOT) return 0;
+  for (int k = 0; k < 2; k++) back[k] = w->other[pair[k]];
+  return 1;
+}
+
+/* Both sides of a baffle have the same pairs, so that the mesh shows which
+ * faces lie back to back: those of its front are matched. */
+static uint16_t weight_across(const struct walls *w, const size_t pair[2],
+                              uint16_t weight)
+{
+  size_t back[2];
+  uint16_t other;
+
+  if (!weight || !across(w, pair, back)) return weight;
+  if (side_of(w, pair[0]) != VG_INNER_FRONT || back[0] == VG_NO_INDEX ||
+      back[1] == VG_NO_INDEX)
+    return 0;
+  other = weight_of(w, back);
+  return other < weight ? other : weight;
+}
+
 static void weigh(void *context, size_t first, size_t end, int worker)
 {
   const struct walls *w = context;
@@ -163,7 +198,7 @@ static void weigh(void *context, size_t first, size_t end, int worker)
     w->weight[i] = 0;
     if (vg_edges_count(&w->edges, i) != 2) continue;
     for (int k = 0; k < 2; k++) pair[k] = half[k] / 3;
-    w->weight[i] = weight_of(w, pair);
+    w->weight[i] = weight_across(w, pair, weight_of(w, pair));
   }
 }
 
@@ -175,12 +210,15 @@ static void test_pairs(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     const uint32_t *half = vg_edges_at(&w->edges, i);
-    size_t pair[2];
+    size_t pair[2], back[2];
+    int good;
 
     if (!w->weight[i] || w->state[i] != UNTESTED) continue;
     for (int k = 0; k < 2; k++) pair[k] = half[k] / 3;
-    if (w->e->partner[pair[0]] == pair[1])
-      w->state[i] = vg_pair_is_good(w->e, w->surface, pair) ? GOOD : BAD;
+    if (w->e->partner[pair[0]] != pair[1]) continue;
+    good = vg_pair_is_good(w->e, w->surface, pair) &&
+           (!across(w, pair, back) || vg_pair_is_good(w->e, w->surface, back));
+    w->state[i] = good ? GOOD : BAD;
   }
 }
 
@@ -236,6 +274,44 @@ static vg_status reserve(struct walls *w, struct vg_links *l,
   return vg_fail_memory(err, "the pairs of wall faces");
 }
 
+/* Pairs of fronts become pairs of backs. */
+static void copy_pairs(const struct walls *w)
+{
+  uint32_t *partner = w->e->partner;
+
+  for (size_t i = 0; i < w->n && w->other; i++)
+    if (partner[i] != VG_NO_INDEX && side_of(w, i) == VG_INNER_FRONT)
+      partner[w->other[i]] = w->other[partner[i]];
+}
+
+/* Finds the faces on both sides of inner surfaces. */
+static vg_status find_others(struct walls *w, struct vg_error *err)
+{
+  const uint32_t *face_tri = w->e->columns->face_tri;
+  uint32_t *first = NULL, *tri = NULL, *face = NULL;
+  vg_status st = vg_mesh_inner_points(w->surface, &first, err);
+
+  if (st < 0 || !first) return st;
+  tri = vg_alloc(w->surface->n_tri, sizeof *tri);
+  face = vg_alloc(w->surface->n_tri, sizeof *face);
+  w->other = vg_alloc(w->n, sizeof *w->other);
+  if (!tri || !face || !w->other)
+    VG_TRY(vg_fail_memory(err, "the pairs of wall faces"));
+  VG_TRY(vg_mesh_inner_pairs(w->surface, first, tri, err));
+  memset(face, 0xff, w->surface->n_tri * sizeof *face);
+  for (uint32_t i = 0; i < w->n; i++) face[face_tri[i]] = i;
+  for (size_t i = 0; i < w->n; i++) {
+    const uint32_t t = tri[face_tri[i]];
+
+    w->other[i] = t == UINT32_MAX ? VG_NO_INDEX : face[t];
+  }
+done:
+  free(first);
+  free(tri);
+  free(face);
+  return st;
+}
+
 /* Counts the pairs, and measures their part of the area of the walls. */
 static void measure(struct walls *w)
 {
@@ -267,6 +343,7 @@ vg_status vg_pairs_find_wall(struct vg_expand *e, const struct vg_mesh *surface,
   VG_TRY(vg_edges_build(&w.edges, c->n_column, w.n,
                         (const uint32_t(*)[3])c->face, NULL, 0, err));
   VG_TRY(reserve(&w, &l, err));
+  VG_TRY(find_others(&w, err));
   vg_parallel_for(e->threads, w.edges.n, EDGE_GRAIN, weigh, &w);
   for (int i = 0, again = 1; i < ROUNDS && again; i++) {
     link_faces(&w, &l);
@@ -274,9 +351,11 @@ vg_status vg_pairs_find_wall(struct vg_expand *e, const struct vg_mesh *surface,
     vg_parallel_for(e->threads, w.edges.n, EDGE_GRAIN, test_pairs, &w);
     again = drop_bad(&w) > 0;
   }
+  copy_pairs(&w);
   measure(&w);
 done:
   vg_edges_release(&w.edges);
+  free(w.other);
   free(w.weight);
   free(w.state);
   free(l.to);

@@ -26,10 +26,6 @@
 /* S68: finest octree cells of the sizing field for a farfield along the Mach
  * cone, relative to those of the field of the cells. */
 #define BOOM_COARSENESS 4
-/* S79: edges around a full circle, and tolerance relative to the diagonal of
- * the domain, when a generated boundary is remeshed in a metric. */
-#define FARFIELD_PER_TURN 8
-#define FARFIELD_TOLERANCE 0.01
 
 /* --- the decision -------------------------------------------------------- */
 
@@ -479,8 +475,8 @@ static vg_status stretch_added(struct vg_boundary *b, size_t n_own,
   o.fixed = fixed;
   o.field = field;
   /* Only its sizes count, since a generated boundary has no shape to keep. */
-  o.per_turn = FARFIELD_PER_TURN;
-  o.tolerance = FARFIELD_TOLERANCE * vg_distance(lo, hi);
+  o.per_turn = VG_OUTER_PER_TURN;
+  o.tolerance = VG_OUTER_TOLERANCE * vg_distance(lo, hi);
   o.scale = 1; /* `spacing` and the field are scaled */
   o.h_max = spacing > 0 ? spacing : vg_distance(lo, hi);
   o.is_requested = 0; /* `spacing` concerns the farfield alone. */
@@ -535,6 +531,31 @@ done:
   return st;
 }
 
+/* Completes the domain, and cuts inner surfaces that reach beyond it. Where
+ * they reach beyond a symmetry plane, its rim crosses their edges, so that it
+ * is made without them first. */
+static vg_status complete_by(struct vg_boundary *b, struct vg_farfield *far,
+                             const struct vg_sizing *sizing,
+                             struct vg_display *show, struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT, other = VG_ERROR_INIT;
+  int is_cut = 0;
+  vg_status st = vg_domain_complete(&b->surface, far, sizing, &b->domain, &why);
+  const int again = st == VG_ERR_GEOMETRY && b->domain.is_crossed;
+
+  if (again) {
+    far->sheets = NULL;
+    st = vg_domain_complete(&b->surface, far, sizing, &b->domain, &other);
+  }
+  if (st < 0) return vg_fail(err, st, "%s", why.text);
+  if (!b->inner.n_tri) return st;
+  st = vg_boundary_cut_outer(b, sizing, far->spacing, &is_cut, show, &other);
+  if (st < 0)
+    return vg_fail(err, st, "%s: %s", b->read->files.stem, other.text);
+  if (again && !is_cut) return vg_fail(err, VG_ERR_GEOMETRY, "%s", why.text);
+  return st;
+}
+
 vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
 {
@@ -548,7 +569,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
   far.sheets = b->inner.n_tri ? &b->inner : NULL;
-  VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
+  VG_TRY(complete_by(b, &far, sizing, show, err));
   VG_TRY(check_reach(b, err));
   VG_TRY(stretch_added(b, n_own, sizing, far.spacing, show, err));
 done:

@@ -193,6 +193,25 @@ double vg_boundary_length(const struct vg_boundary *b);
 vg_status vg_boundary_imprint(struct vg_boundary *b, int *is_cut,
                               struct vg_display *show, struct vg_error *err);
 
+/* S79: edges around a full circle, and tolerance relative to the diagonal of
+ * the domain, when a generated boundary is remeshed. */
+#define VG_OUTER_PER_TURN 8
+#define VG_OUTER_TOLERANCE 0.01
+
+/** Cuts inner surfaces that cross the outer boundary, the last
+ * b->domain.n_added_tri triangles of the surface, removes what is beyond it,
+ * with a note, and remeshes both.
+ *
+ * @param sizing   sizes of the outer boundary; spacing: their largest, 0: none
+ * @param is_cut  out: 0: nothing was changed
+ * VG_ERR_GEOMETRY, with patch and place: a patch is beyond the outer boundary
+ * as a whole, or crosses it and is not remeshed; otherwise as
+ * vg_boundary_imprint and vg_remesh. */
+vg_status vg_boundary_cut_outer(struct vg_boundary *b,
+                                const struct vg_sizing *sizing, double spacing,
+                                int *is_cut, struct vg_display *show,
+                                struct vg_error *err);
+
 /** Suggests `baffles` for a surface that is closed without the patches that
  * have open edges, as the end of a message: "; if fluid is on both sides of its
  * open sheets, give --baffles 7,8". Returns 0 for other surfaces; text is

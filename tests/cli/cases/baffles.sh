@@ -108,6 +108,21 @@ done
 vanguard check tall/tall.b8.ugrid
 exits 0
 
+# Hexahedra on both sides of a baffle: the same quadrilaterals, of which some
+# triangles are left; check accepts their common points.
+for threads in 1 3; do
+  vanguard mesh tall.stl --flow internal --baffles tall --first 0.008 --quiet \
+    --layer-count 6 --hmax 0.12 --cells hex --threads $threads \
+    --write b8.ugrid --out hex$threads
+  exits 0
+done
+same hex1/tall.b8.ugrid hex3/tall.b8.ugrid
+vanguard check hex1/tall.b8.ugrid
+exits 0
+awk '$1 == 7 { front = $2 } $1 == 8 { back = $2 }
+  END { exit !(front == 56 && back == 56) }' out ||
+  fail "faces of the sides: $(cat out)"
+
 # A sheet without layers ends in a side of the duct in which columns of the
 # floor slide: the side is remeshed around it, and the floor has all layers.
 duct side "fin 4 4  0.5 0 0.25  0 0.5 0  0 0 0.5"

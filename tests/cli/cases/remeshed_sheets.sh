@@ -97,3 +97,83 @@ duct inside "in 1 1  0.4 0.4 0.5  0.2 0 0  0 0.2 0" \
 vanguard mesh inside.stl --flow external --sheets in,out $remeshed
 exits 1
 says err "patch 7 in, an inner surface, is not in the fluid"
+
+# A wake that ends beyond the generated farfield is cut there, around a whole
+# body and half of one; without remeshing, and as a whole beyond it, it is
+# refused.
+duct far "wake 60 2  0.5 -0.3 0.45  30 0 0  0 0.9 0.03"
+awk '/^solid w3/ { out = 1 } !out { print } /^endsolid/ { out = 0 }' far.stl \
+  >cutoff.stl
+far="--flow external --sheets wake --farfield-lengths 5 --surface-size 0.25"
+for threads in 1 3; do
+  # shellcheck disable=SC2086
+  vanguard mesh far.stl $far --remesh-surface yes --quiet --threads $threads \
+    --decompose octree --leaf-cells 4000 --write b8.ugrid --out far$threads
+  exits 0
+  says out "were removed"
+  vanguard check far$threads/far.b8.ugrid
+  exits 0
+  says out "valid"
+done
+same far1/far.b8.ugrid far3/far.b8.ugrid
+same far1/far.sheets far3/far.sheets
+# shellcheck disable=SC2086
+vanguard mesh far.stl $far --remesh-surface yes --farfield box --quiet \
+  --write b8.ugrid --out box
+exits 0
+vanguard check box/far.b8.ugrid
+exits 0
+says out "valid"
+# shellcheck disable=SC2086
+vanguard mesh cutoff.stl $far --half y --remesh-surface yes --quiet \
+  --write b8.ugrid --out cutoff
+exits 0
+vanguard check cutoff/cutoff.b8.ugrid
+exits 0
+says out "valid"
+for name in "cutoff.stl --half y" "far.stl"; do
+  # shellcheck disable=SC2086
+  vanguard mesh $name $far --out refused
+  exits 1
+done
+says err "patch 7 wake, an inner surface, crosses the generated boundary at"
+says err "set remesh_surface to yes, which cuts it there"
+duct beyond "wake 4 2  40 -0.3 0.45  30 0 0  0 0.9 0.03"
+# shellcheck disable=SC2086
+vanguard mesh beyond.stl $far --remesh-surface yes --out refused
+exits 1
+says err "patch 7 wake, an inner surface, lies beyond the generated boundary as"
+
+# Points of a smooth wall within rounding of a sheet: the equator of a sphere in
+# its plane, and meridians in that of another sheet.
+duct plates "lie 8 8  -1 -1 0  2 0 0  0 2 0" "up 7 9  -1 0 -1  2 0 0  0 0 2"
+{
+  awk 'function corner(i, j, t, p) {
+      t = 3.14159265358979 * i / 12
+      if (i % 12 == 0) j = 0
+      p = 6.28318530717959 * (j % 24) / 24
+      print "vertex", sprintf("%.17g %.17g %.17g", sin(t) * cos(p) / 2,
+        sin(t) * sin(p) / 2, cos(t) / 2 + (i == 6 ? 1e-9 : 0))
+    }
+    function facet(a, b, c, d, e, f) {
+      print "facet normal 0 0 0\nouter loop"
+      corner(a, b); corner(c, d); corner(e, f)
+      print "endloop\nendfacet"
+    }
+    BEGIN {
+      print "solid ball"
+      for (i = 0; i < 12; i++) for (j = 0; j < 24; j++) {
+        if (i) facet(i, j, i + 1, j + 1, i, j + 1)
+        if (i < 11) facet(i, i ? j : 0, i + 1, j, i + 1, j + 1)
+      }
+      print "endsolid ball"
+    }'
+  awk '/^solid lie/ { on = 1 } on { print }' plates.stl
+} >equator.stl
+vanguard mesh equator.stl --flow external --farfield-lengths 3 --quiet \
+  --sheets lie,up --remesh-surface yes --surface-size 0.12 \
+  --write b8.ugrid --out equator
+exits 0
+vanguard check equator/equator.b8.ugrid
+exits 0
+says out "valid"
