@@ -15,7 +15,7 @@
 #include "base/comm.h"
 #include "base/memory.h"
 
-static int is_set_back; /* The clock of the day, after each look at it. */
+static int is_set_back; /* The clock of the day, after each call. */
 
 /* Replaces that of the C library. */
 int clock_gettime(clockid_t clock, struct timespec *t)
