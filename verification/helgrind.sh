@@ -42,9 +42,11 @@ work_folder helgrind
 cd "$work"
 octahedron > body.obj
 defects > defects.stl
-"$vanguard" mesh -q --threads 1 -p body.obj --growth 2 --write b8.ugrid,mesh \
-  --out given > given.out
-awk -f "$root/tests/faults/metric.awk" given/body.mesh > given/body.sol
+for form in b8.ugrid mesh; do
+  "$vanguard" mesh -q --threads 1 -p body.obj --growth 2 --write $form \
+    --out given_$form > given.out
+done
+awk -f "$root/tests/faults/metric.awk" given_mesh/body.mesh > given_mesh/body.sol
 
 # run CASE ARGUMENT...: one run of the program, and a row of the table.
 run() {
@@ -79,12 +81,12 @@ mesh octree --decompose octree --subdomains 4
 mesh discrete --decompose discrete --subdomains 4
 mesh whole --mesher tetgen
 mesh remesh --remesh-surface yes --surface-size 0.5
-mesh metric --sizes given/body.sol
+mesh metric --sizes given_mesh/body.sol
 run repair mesh -q --threads "$threads" -p defects.stl --growth 2 --close-holes yes \
   --write b8.ugrid --out repair
 mesh resume --leaf-cells 400 --run-dir kept --keep-run
 mesh resume --leaf-cells 400 --run-dir kept --keep-run --resume
-run check check -q --threads "$threads" given/body.b8.ugrid
-run partition partition -q --threads "$threads" given/body.b8.ugrid -n 4 \
+run check check -q --threads "$threads" given_b8.ugrid/body.b8.ugrid
+run partition partition -q --threads "$threads" given_b8.ugrid/body.b8.ugrid -n 4 \
   --out parts
 exit $failed
