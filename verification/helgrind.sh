@@ -22,7 +22,7 @@
 # fill, judge, slices, pictures and solver partitions; `octree` and `discrete` the
 # decompositions before the fill; `whole` another mesher in its process; `remesh`
 # remeshing; `metric` metrics at points; `repair` the surface of a wrap; `resume`
-# the run directory; `check` and `partition` a mesh in a file.
+# the run directory; `check` a mesh in a file.
 # Exit status: 0 no report, 1 a report, or a run that failed or did not end, 2
 # usage, 77 no valgrind.
 set -euo pipefail
@@ -87,6 +87,4 @@ run repair mesh -q --threads "$threads" -p defects.stl --growth 2 --close-holes 
 mesh resume --leaf-cells 400 --run-dir kept --keep-run
 mesh resume --leaf-cells 400 --run-dir kept --keep-run --resume
 run check check -q --threads "$threads" given_b8.ugrid/body.b8.ugrid
-run partition partition -q --threads "$threads" given_b8.ugrid/body.b8.ugrid -n 4 \
-  --out parts
 exit $failed
