@@ -5,7 +5,7 @@
 # usage: verification/helgrind.sh [--vanguard PROGRAM] [--seconds N] [--threads N]
 #          [--work DIR] [--out FILE] [CASE...]
 #   --vanguard  the program (default build/release/bin/vanguard)
-#   --seconds   limit of each case (default 300)
+#   --seconds   limit of each case (default 600)
 #   --threads   (default 3)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)
@@ -30,7 +30,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=bench/common.sh
 . "$root/bench/common.sh"
-vanguard=$root/build/release/bin/vanguard seconds=300 threads=3 work='' failed=0
+vanguard=$root/build/release/bin/vanguard seconds=600 threads=3 work='' failed=0
 take_options "vanguard seconds threads work out" "" "$@"
 command -v valgrind > /dev/null || skip "needs valgrind"
 [ -x "$vanguard" ] || die "no program $vanguard: build it first"
