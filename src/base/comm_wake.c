@@ -182,7 +182,7 @@ static void *live(void *user)
     double now;
 
     give_signs(l);
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);
     until.tv_sec += (time_t)period;
     until.tv_nsec += (long)(1e9 * (period - (double)(time_t)period));
     if (until.tv_nsec >= 1000000000)
@@ -244,6 +244,19 @@ static struct vg_life *life_new(const struct vg_comm *c, double limit)
   return l;
 }
 
+/* The clock of the day may jump while the thread waits. */
+static void life_start(struct vg_life *l)
+{
+  pthread_condattr_t clock;
+
+  pthread_mutex_init(&l->lock, NULL);
+  pthread_condattr_init(&clock);
+  pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
+  pthread_cond_init(&l->end, &clock);
+  pthread_condattr_destroy(&clock);
+  l->is_running = !pthread_create(&l->thread, NULL, live, l);
+}
+
 vg_status vg_comm_watch(struct vg_comm *c, double seconds, struct vg_error *err)
 {
   struct vg_life *l;
@@ -260,9 +273,7 @@ vg_status vg_comm_watch(struct vg_comm *c, double seconds, struct vg_error *err)
                                 sizeof *l->host, MPI_BYTE, l->comm)))
     st = vg_fail(err, VG_ERR_REMOTE, "MPI cannot prepare signs of life");
   if (st >= 0) {
-    pthread_mutex_init(&l->lock, NULL);
-    pthread_cond_init(&l->end, NULL);
-    l->is_running = !pthread_create(&l->thread, NULL, live, l);
+    life_start(l);
     if (!l->is_running) st = vg_fail_memory(err, "a thread");
     c->life = l;
   } else if (l) {

@@ -120,7 +120,8 @@ adapter microhttpd.h '^cli/http/http\.c$'
 # The last bits of LAPACK's results differ between processors: never use it
 # where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
-adapter pthread.h '^(base|partition|core/mesher|layers/relax)/|^run/common/progress\.c$'
+adapter pthread.h \
+  '^(base|partition|core/mesher|layers/relax)/|^run/(common/progress\.c|picture/cuts_parts\.h)$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter metis.h '^partition/graph/graph_metis\.c$'

@@ -23,6 +23,7 @@ timeout 30 "$mpirun" "$flag" 2 "$program" stop 2>&1 |
   grep -q "rank 1 on .* has given no sign of life for 3 s" ||
   { echo "stop: the silent rank is not named"; bad=1; }
 check leave 0
+check jump 0
 
 # Processes started by a launcher of another MPI, which are not connected.
 loose() {

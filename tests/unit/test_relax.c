@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lowering tops of layers under flat cells of the field. */
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,6 +10,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/comm.h"
+#include "base/memory.h"
 #include "core/geometry/shape.h"
 #include "core/judge/quality.h"
 #include "layer_cases.h"
@@ -239,12 +242,101 @@ static void nothing_to_do(void **state)
   model_release(&m);
 }
 
+/* --- calls that fail ------------------------------------------------------ */
+
+static long n_call, fails_at; /* 0: none */
+
+static int fails(void)
+{
+  return fails_at && ++n_call == fails_at;
+}
+
+#define FAILS(type, name, parameters, arguments, failure)                      \
+  type __real_##name parameters;                                               \
+  type __wrap_##name parameters;                                               \
+  type __wrap_##name parameters                                                \
+  {                                                                            \
+    return fails() ? failure : __real_##name arguments;                        \
+  }
+
+FAILS(void *, vg_alloc, (size_t n, size_t size), (n, size), NULL)
+FAILS(void *, vg_calloc, (size_t n, size_t size), (n, size), NULL)
+FAILS(int, vg_reserve, (void *block, size_t *cap, size_t need, size_t size),
+      (block, cap, need, size), -1)
+FAILS(vg_status, vg_comm_bcast,
+      (struct vg_comm * c, int root, struct vg_bytes *b, struct vg_error *err),
+      (c, root, b, err), vg_fail(err, VG_ERR_MEMORY, "no broadcast"))
+FAILS(vg_status, vg_comm_allgather,
+      (struct vg_comm * c, const struct vg_bytes *mine, struct vg_bytes *out,
+       struct vg_error *err),
+      (c, mine, out, err), vg_fail(err, VG_ERR_MEMORY, "no exchange"))
+
+/* The slices of the test are always there. */
+static vg_status get_slice(const struct vg_slices *s, size_t i,
+                           struct vg_slice *out, struct vg_error *err)
+{
+  const long at = fails_at;
+  vg_status st;
+
+  fails_at = 0;
+  st = cut_get(s, i, out, err);
+  fails_at = at;
+  return st;
+}
+
+/* There is an error, or the same heights. The linker replaces the calls. */
+static void every_call_fails(void **state)
+{
+  struct vg_relax_report r;
+  struct vg_column *old, *once;
+  uint64_t seed = 2;
+  struct model m;
+  struct cut c;
+  long n_failed = 0;
+  size_t size;
+
+  (void)state;
+  memset(&m, 0, sizeof m);
+  case_sphere(&m.surface, 0.3, 1, CASE_SYMMETRY);
+  build(&m, 0.3);
+  assert_true(spoil(&m, &seed) > 0);
+  size = m.layers.columns.n_column * sizeof *old;
+  old = vg_alloc(1, size);
+  once = vg_alloc(1, size);
+  memcpy(old, m.layers.columns.column, size);
+  cut_make(&c, &m.field, 3, m.layers.front.n_point, NULL, 1);
+  c.s.get = get_slice;
+  for (long last = 1, at = LONG_MAX; last; at = at == LONG_MAX ? 1 : at + 1) {
+    struct vg_error err = VG_ERROR_INIT;
+    vg_status st;
+
+    n_call = 0;
+    fails_at = at;
+    st = vg_layers_relax(NULL, &m.surface, &m.layers, &c.s, 1, &r, &err);
+    fails_at = 0;
+    last = n_call >= at || at == LONG_MAX;
+    n_failed += st < 0;
+    assert_true(st == VG_OK || (st == VG_ERR_MEMORY && *err.text));
+    if (at == LONG_MAX) memcpy(once, m.layers.columns.column, size);
+    if (st == VG_OK) assert_memory_equal(m.layers.columns.column, once, size);
+    memcpy(m.layers.columns.column, old, size);
+    for (size_t i = 0; i < m.layers.front.n_point; i++)
+      memcpy(m.layers.front.x[i], m.field.point[i], sizeof *m.field.point);
+  }
+  assert_true(n_failed > 10);
+  free(old);
+  free(once);
+  cut_release(&c);
+  model_release(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(flat_cells_on_a_sphere),
     cmocka_unit_test(flat_cells_on_a_wedge),
     cmocka_unit_test(nothing_to_do),
+    cmocka_unit_test(every_call_fails),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

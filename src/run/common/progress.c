@@ -72,11 +72,11 @@ static void wait_for_more(long long ms)
 {
   struct timespec t;
 
-  clock_gettime(CLOCK_REALTIME, &t);
+  clock_gettime(CLOCK_MONOTONIC, &t);
   t.tv_sec += (time_t)(ms / 1000);
   t.tv_nsec += (long)(ms % 1000) * 1000000;
   if (t.tv_nsec >= 1000000000) t.tv_sec++, t.tv_nsec -= 1000000000;
-  sem_timedwait(&asked, &t);
+  sem_clockwait(&asked, CLOCK_MONOTONIC, &t);
 }
 
 /* Other threads continue writing until the process ends, so removing the folder

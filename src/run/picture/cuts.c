@@ -77,7 +77,10 @@ vg_status vg_cuts_new(size_t n, const struct vg_cut *cut, struct vg_cuts **out,
 void vg_cuts_free(struct vg_cuts *c)
 {
   if (!c) return;
-  for (size_t i = 0; i < c->n * TILES; i++) free(c->at[i]);
+  for (size_t i = 0; i < c->n * TILES; i++) {
+    if (c->at[i]) pthread_mutex_destroy(&c->at[i]->lock);
+    free(c->at[i]);
+  }
   free(c->at);
   free(c);
 }
@@ -294,12 +297,11 @@ static vg_status unpack(struct vg_cuts *c, const struct vg_bytes *b,
   const struct sent *from = (const struct sent *)b->data;
 
   for (size_t k = 0; k < b->n / sizeof *from; k++) {
-    struct tile **at = &c->at[from[k].at];
+    struct tile *t = vg_cuts_tile(&c->at[from[k].at]);
 
-    if (!*at) *at = vg_calloc(1, sizeof **at);
-    if (!*at) return vg_fail_memory(err, "pictures of cuts");
+    if (!t) return vg_fail_memory(err, "pictures of cuts");
     for (size_t i = 0; i < TILE * TILE; i++)
-      if ((*at)->code[i] < from[k].code[i]) (*at)->code[i] = from[k].code[i];
+      if (t->code[i] < from[k].code[i]) t->code[i] = from[k].code[i];
   }
   return VG_OK;
 }

@@ -20,17 +20,18 @@ static double most(double a, double b)
   return a > b ? a : b;
 }
 
-/* The tile, created if it does not exist; NULL: no memory. */
-static struct tile *touch(struct tile **at)
+struct tile *vg_cuts_tile(struct tile **at)
 {
   struct tile *now = __atomic_load_n(at, __ATOMIC_ACQUIRE), *made;
 
   if (now) return now;
   made = vg_calloc(1, sizeof *made);
   if (!made) return NULL;
+  pthread_mutex_init(&made->lock, NULL);
   if (__atomic_compare_exchange_n(at, &now, made, 0, __ATOMIC_ACQ_REL,
                                   __ATOMIC_ACQUIRE))
     return made;
+  pthread_mutex_destroy(&made->lock);
   free(made);
   return now;
 }
@@ -218,13 +219,12 @@ vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
   find_lines(g, &l);
   for (int ty = r.y0 / TILE; ty <= (r.y1 - 1) / TILE; ty++)
     for (int tx = r.x0 / TILE; tx <= (r.x1 - 1) / TILE; tx++) {
-      struct tile *t = touch(&tiles[ty * TILES_X + tx]);
+      struct tile *t = vg_cuts_tile(&tiles[ty * TILES_X + tx]);
 
       if (!t) return vg_fail_memory(err, "pictures of cuts");
-      while (__atomic_test_and_set(&t->busy, __ATOMIC_ACQUIRE)) {
-      }
+      pthread_mutex_lock(&t->lock);
       draw_tile(t, tx, ty, &r, g, &l, code);
-      __atomic_clear(&t->busy, __ATOMIC_RELEASE);
+      pthread_mutex_unlock(&t->lock);
     }
   return VG_OK;
 }

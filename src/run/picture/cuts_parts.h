@@ -3,6 +3,8 @@
 #ifndef VG_RUN_PICTURE_CUTS_PARTS_H
 #define VG_RUN_PICTURE_CUTS_PARTS_H
 
+#include <pthread.h>
+
 #include "run/picture/cuts.h"
 
 /* Samples are stored in square tiles, which are created when first drawn
@@ -29,7 +31,7 @@ enum {
 
 struct tile {
   uint16_t code[TILE * TILE];
-  char busy; /* A lock: the thread that has set it draws. */
+  pthread_mutex_t lock; /* Held by the thread that draws. */
 };
 
 struct vg_cuts {
@@ -44,8 +46,12 @@ struct polygon {
   double p[CORNERS_MAX][2];
 };
 
+/** The tile, created if it does not exist; NULL: no memory. Threads: safe. */
+struct tile *vg_cuts_tile(struct tile **at);
+
 /* cuts_draw.c: draws a convex polygon. Its corners may be in any order and are
- * sorted around it. code: that of an inner sample, with shade 0. */
+ * sorted around it. code: that of an inner sample, with shade 0. Threads: safe.
+ */
 vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
                        struct vg_error *err);
 
