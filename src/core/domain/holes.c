@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: open edges are joined to rims. The rims of the cut of a half model
  * stay open; each other rim is closed by a patch of its own, or by two or three
- * if it lies in as many planes. */
+ * if it lies in two or three planes. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
