@@ -416,6 +416,30 @@ static void closes_a_rim_in_two_planes(void **state)
   vg_mesh_release(&m);
 }
 
+/* An eighth of a ball, such as half a hull without deck and transom. The rim is
+ * curved in one case, so that none of the other two planes is exact. */
+static void closes_a_rim_in_three_planes(void **state)
+{
+  (void)state;
+  for (int is_curved = 0; is_curved < 2; is_curved++) {
+    struct vg_mesh m = ball(origin, 5, 0.1);
+    double eighth = -volume(&m) / 4;
+    size_t n;
+
+    cut_end(&m, 0, 1, 0);
+    cut_end(&m, 1, 1, 0);
+    for (size_t i = 0; i < m.n_point && is_curved; i++)
+      m.point[i][0] += 0.1 * m.point[i][1] * m.point[i][2];
+    assert_int_equal(close_holes(&m, -1, &n), VG_OK);
+    assert_int_equal(n, 3);
+    check_closed(&m);
+    assert_string_equal(m.patch[m.n_patch - 1].name, "cap_3");
+    eighth /= -volume(&m);
+    assert_true(eighth > 0.8 && eighth < 1.2);
+    vg_mesh_release(&m);
+  }
+}
+
 static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
                          double dx)
 {
@@ -800,6 +824,7 @@ int main(void)
     cmocka_unit_test(a_hole_is_not_a_symmetry_plane),
     cmocka_unit_test(closes_holes_but_not_half_bodies),
     cmocka_unit_test(closes_a_rim_in_two_planes),
+    cmocka_unit_test(closes_a_rim_in_three_planes),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(adds_a_symmetry_plane_alone),
     cmocka_unit_test(refuses_half_bodies_it_cannot_complete),

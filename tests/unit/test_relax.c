@@ -147,16 +147,24 @@ static void whole_mesh_is_valid(const struct model *m)
 static void relax(struct model *m, size_t n_slice, int threads, uint64_t seed,
                   struct vg_relax_report *r)
 {
+  struct vg_slices_point *point;
   struct cut c;
   struct vg_error err = VG_ERROR_INIT;
+  size_t n_point;
 
   cut_make(&c, &m->field, n_slice, m->layers.front.n_point, NULL, seed);
-  if (vg_layers_relax(NULL, &m->surface, &m->layers, &c.s, threads, r, &err) <
-      0)
+  if (vg_layers_relax(NULL, &m->surface, &m->layers, &c.s, threads, &n_point,
+                      &point, r, &err) < 0)
     fail_msg("%s", err.text);
   cut_release(&c);
   copy_tops(m);
+  assert_int_equal(n_point, r->n_point);
+  for (size_t i = 0; i < n_point; i++)
+    memcpy(m->field.point[point[i].id], point[i].x, sizeof point->x);
+  free(point);
 }
+
+static uint64_t n_moved; /* Points that were moved, in all cases. */
 
 /* The caps of all columns do not depend on slices and threads. */
 static void check_case(struct model *m, double h, uint64_t seed)
@@ -164,37 +172,45 @@ static void check_case(struct model *m, double h, uint64_t seed)
   struct vg_relax_report first, again;
   struct vg_columns *c = &m->layers.columns;
   struct vg_column *old, *once;
-  double(*x)[3], before;
-  size_t n_x;
+  double(*x)[3], (*field)[3], before;
+  size_t n_x, n_field;
 
   build(m, h);
   n_x = m->layers.front.n_point;
+  n_field = m->field.n_point;
   assert_true(spoil(m, &seed) > 3);
   before = worst(&m->field, VG_NO_INDEX);
   assert_true(before < 0.03);
   old = vg_alloc(c->n_column, sizeof *old);
   once = vg_alloc(c->n_column, sizeof *once);
   x = vg_alloc(n_x, sizeof *x);
+  field = vg_alloc(2 * n_field, sizeof *field);
   memcpy(old, c->column, c->n_column * sizeof *old);
   memcpy(x, m->layers.front.x, n_x * sizeof *x);
+  memcpy(field, m->field.point, n_field * sizeof *field);
   relax(m, 1, 1, 1, &first);
   assert_true(first.n_flat > 3 && first.n_column > 0);
+  n_moved += first.n_point;
   assert_true(first.n_left < first.n_flat);
   assert_true(worst(&m->field, VG_NO_INDEX) > before);
   layers_are_sound(m, old);
   whole_mesh_is_valid(m);
   memcpy(once, c->column, c->n_column * sizeof *once);
+  memcpy(field + n_field, m->field.point, n_field * sizeof *field);
   for (int k = 2; k < 5; k++) {
     memcpy(c->column, old, c->n_column * sizeof *old);
     memcpy(m->layers.front.x, x, n_x * sizeof *x);
-    copy_tops(m);
+    memcpy(m->field.point, field, n_field * sizeof *field);
     relax(m, (size_t)k * 3, k, (uint64_t)k, &again);
     assert_memory_equal(c->column, once, c->n_column * sizeof *once);
     assert_memory_equal(&again, &first, sizeof first);
+    assert_memory_equal(m->field.point, field + n_field,
+                        n_field * sizeof *field);
   }
   free(old);
   free(once);
   free(x);
+  free(field);
   model_release(m);
 }
 
@@ -208,6 +224,7 @@ static void flat_cells_on_a_sphere(void **state)
     case_sphere(&m.surface, 0.2, 1, CASE_SYMMETRY);
     check_case(&m, 0.2, seed);
   }
+  assert_true(n_moved > 0);
 }
 
 /* Columns of fans, and columns that slide in a plane. */

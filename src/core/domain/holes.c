@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: open edges are joined to rims. The rims of the cut of a half model
- * stay open; each other rim is closed by a patch of its own, or by two if it
- * lies in two planes. */
+ * stay open; each other rim is closed by a patch of its own, or by two or three
+ * if it lies in two or three planes. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "core/domain/open_edges.h"
@@ -16,6 +17,9 @@
 
 #define HOLE_FLATNESS 0.05 /* S11 */
 #define ONE_PLANE 1e-3     /* S11: flatter rims are not divided */
+#define NEAR_END 1e-3      /* S125: of the length of the body */
+#define CORNER 0.7         /* S125: cosine of the turn of a rim at a corner */
+#define FAR 0.3            /* S125: of the width of a rim */
 #define PART 0.2 /* S11: of a rim in two planes: least part in one of them */
 #define OPPOSITE                                                               \
   0.1 /* S11: of the extent: rims this near to an end belong to it */
@@ -30,7 +34,7 @@ struct holes {
     uint32_t first;
     int stays;
   } * rim;
-  double lo[3], hi[3], tolerance;
+  double lo[3], hi[3], length, tolerance;
 };
 
 static vg_status follow_rims(struct holes *h, struct vg_error *err)
@@ -188,12 +192,56 @@ done:
   return st;
 }
 
-/* Longest run of consecutive points of the loop in a plane normal to an axis at
- * an end of the body: *first and *n_run. */
-static void find_run(const struct holes *h, size_t n, const uint32_t *loop,
-                     size_t *first, size_t *n_run)
+/* Cosine of the angle by which the loop turns in point i. */
+static double turn(const struct holes *h, size_t n, const uint32_t *loop,
+                   size_t i)
 {
-  *n_run = 0;
+  double in[3], out[3];
+
+  vg_sub(h->m.point[loop[i % n]], h->m.point[loop[(i + n - 1) % n]], in);
+  vg_sub(h->m.point[loop[(i + 1) % n]], h->m.point[loop[i % n]], out);
+  return vg_unit(in) > 0 && vg_unit(out) > 0 ? vg_dot(in, out) : 1;
+}
+
+/* Number of points of a run that follow its sharpest corner near its end i, in
+ * steps of `step` towards the other end. */
+static size_t n_behind_corner(const struct holes *h, size_t n,
+                              const uint32_t *loop, size_t n_run, size_t i,
+                              size_t step)
+{
+  const double *end = h->m.point[loop[i % n]];
+  double sharpest = turn(h, n, loop, i);
+  size_t best = 0;
+
+  for (size_t k = 1; k + 1 < n_run; k++) {
+    double cosine;
+
+    i = (i + step) % n;
+    if (vg_distance(h->m.point[loop[i]], end) > NEAR_END * h->length) break;
+    cosine = turn(h, n, loop, i);
+    if (cosine >= sharpest) continue;
+    sharpest = cosine;
+    best = k;
+  }
+  return best;
+}
+
+/* Consecutive points of a loop in the plane x[axis] = at. */
+struct run {
+  size_t first, n;
+  int axis;
+  double at;
+};
+
+/* Longest run of the loop in a plane normal to an axis at an end of the body.
+ * It ends at corners: the edge of a thin stem is within the tolerance of the
+ * plane of symmetry, too. */
+static struct run find_run(const struct holes *h, size_t n,
+                           const uint32_t *loop)
+{
+  struct run r = { 0, 0, 0, 0 };
+  size_t behind;
+
   for (int side = 0; side < 6; side++) {
     const int axis = side / 2;
     const double at = side % 2 ? h->hi[axis] : h->lo[axis];
@@ -202,12 +250,16 @@ static void find_run(const struct holes *h, size_t n, const uint32_t *loop,
     /* Twice around, so that a run may pass the first point. */
     for (size_t i = 0; i < 2 * n; i++) {
       if (fabs(h->m.point[loop[i % n]][axis] - at) > h->tolerance) run = 0;
-      else if (++run > *n_run && run <= n) {
-        *n_run = run;
-        *first = (i + 1 - run) % n;
-      }
+      else if (++run > r.n && run <= n)
+        r = (struct run){ (i + 1 - run) % n, run, axis, at };
     }
   }
+  if (r.n < 2 || r.n == n) return r;
+  r.n -= n_behind_corner(h, n, loop, r.n, r.first + r.n - 1, n - 1);
+  behind = n_behind_corner(h, n, loop, r.n, r.first, 1);
+  r.first = (r.first + behind) % n;
+  r.n -= behind;
+  return r;
 }
 
 /* Add points to the chord from point a to point b, `step` apart. */
@@ -233,6 +285,55 @@ static vg_status add_chord(struct holes *h, uint32_t a, uint32_t b, double step,
   return VG_OK;
 }
 
+/* Add the projection of a point onto the plane of a run. */
+static vg_status add_foot(struct holes *h, uint32_t of, const struct run *r,
+                          uint32_t *foot, struct vg_error *err)
+{
+  double(*list)[3] = vg_realloc(h->m.point, h->m.n_point + 1, sizeof *list);
+
+  if (!list) return vg_fail_memory(err, "the cap of a rim");
+  h->m.point = list;
+  *foot = (uint32_t)h->m.n_point++;
+  memcpy(list[*foot], list[of], sizeof *list);
+  list[*foot][r->axis] = r->at;
+  return VG_OK;
+}
+
+/* Points that divide a rim: chord i has n[i] points at point[i]. */
+struct chords {
+  size_t n[3];
+  uint32_t *point[3];
+};
+
+/* A list of points that becomes the loop of a cap. */
+struct part {
+  size_t n;
+  uint32_t *point;
+};
+
+/* Append points i to j of the loop, around its end. */
+static void append_rim(struct part *to, size_t n, const uint32_t *loop,
+                       size_t i, size_t j)
+{
+  for (; i <= j; i++) to->point[to->n++] = loop[i % n];
+}
+
+static void append_chord(struct part *to, const struct chords *c, int i,
+                         int is_reversed)
+{
+  for (size_t k = 0; k < c->n[i]; k++)
+    to->point[to->n++] = c->point[i][is_reversed ? c->n[i] - 1 - k : k];
+}
+
+static double length_of(const struct holes *h, size_t n, const uint32_t *loop)
+{
+  double length = 0;
+
+  for (size_t i = 0; i < n; i++)
+    length += vg_distance(h->m.point[loop[i]], h->m.point[loop[(i + 1) % n]]);
+  return length;
+}
+
 /* A rim in two planes, such as that of half a hull without deck, is divided by
  * the chord between both parts:
  *
@@ -242,31 +343,115 @@ static vg_status add_chord(struct holes *h, uint32_t a, uint32_t b, double step,
  *               '--------------'              run in the plane of symmetry
  */
 static vg_status close_in_two(struct holes *h, size_t n, const uint32_t *loop,
-                              size_t first, size_t n_run,
+                              const struct run *r, struct chords *c,
+                              struct part *part,
                               const struct vg_size_function *law, size_t *n_cap,
                               struct vg_error *err)
 {
-  const size_t last = first + n_run - 1, n_most = n + VG_SPAN_MOST;
-  uint32_t *part = vg_alloc(2 * n_most, sizeof *part), *chord;
-  size_t n_chord = 0, at = 0;
-  double length = 0;
+  const size_t last = r->first + r->n - 1;
+  const double step = length_of(h, n, loop) / (double)n;
   vg_status st;
 
-  if (!part) VG_TRY(vg_fail_memory(err, "the cap of a rim"));
-  chord = part + n_most;
-  for (size_t i = 0; i < n; i++)
-    length += vg_distance(h->m.point[loop[i]], h->m.point[loop[(i + 1) % n]]);
-  VG_TRY(add_chord(h, loop[last % n], loop[first], length / (double)n, &n_chord,
-                   chord, err));
-  for (size_t i = first; i <= last; i++) part[at++] = loop[i % n];
-  for (size_t i = 0; i < n_chord; i++) part[at++] = chord[i];
-  VG_TRY(close_loop(h, at, part, law, n_cap, err));
-  at = 0;
-  for (size_t i = last; i <= first + n; i++) part[at++] = loop[i % n];
-  for (size_t i = n_chord; i-- > 0;) part[at++] = chord[i];
-  VG_TRY(close_loop(h, at, part, law, n_cap, err));
+  VG_TRY(add_chord(h, loop[last % n], loop[r->first], step, &c->n[0],
+                   c->point[0], err));
+  append_rim(part, n, loop, r->first, last);
+  append_chord(part, c, 0, 0);
+  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+  part->n = 0;
+  append_rim(part, n, loop, last, r->first + n);
+  append_chord(part, c, 0, 1);
+  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
 done:
-  free(part);
+  return st;
+}
+
+/* A rim in three planes, such as that of half a hull without deck and transom,
+ * also has a corner between the two parts outside the run. Chords meet in the
+ * projection of this corner onto the plane of the run:
+ *
+ *      first o====== deck =====o corner
+ *            |                /|
+ *            |\             2  |  transom
+ *            | \           /   |
+ *            |  `--- 1 ---o-0--o last
+ *            '--- run ---------'
+ */
+static vg_status close_in_three(struct holes *h, size_t n, const uint32_t *loop,
+                                const struct run *r, size_t corner,
+                                struct chords *c, struct part *part,
+                                const struct vg_size_function *law,
+                                size_t *n_cap, struct vg_error *err)
+{
+  const size_t last = r->first + r->n - 1;
+  const double step = length_of(h, n, loop) / (double)n;
+  uint32_t foot = 0;
+  vg_status st;
+
+  VG_TRY(add_foot(h, loop[corner % n], r, &foot, err));
+  VG_TRY(add_chord(h, loop[last % n], foot, step, &c->n[0], c->point[0], err));
+  c->point[0][c->n[0]++] = foot;
+  VG_TRY(add_chord(h, foot, loop[r->first], step, &c->n[1], c->point[1], err));
+  VG_TRY(
+    add_chord(h, foot, loop[corner % n], step, &c->n[2], c->point[2], err));
+  append_rim(part, n, loop, r->first, last);
+  append_chord(part, c, 0, 0);
+  append_chord(part, c, 1, 0);
+  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+  part->n = 0;
+  append_rim(part, n, loop, last, corner);
+  append_chord(part, c, 2, 1);
+  append_chord(part, c, 0, 1);
+  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+  part->n = 0;
+  append_rim(part, n, loop, corner, r->first + n);
+  append_chord(part, c, 1, 1);
+  part->point[part->n++] = foot;
+  append_chord(part, c, 2, 0);
+  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+done:
+  return st;
+}
+
+/* Sharpest corner of the loop outside the run, away from its plane; 0: the loop
+ * has none. */
+static size_t find_corner(const struct holes *h, size_t n, const uint32_t *loop,
+                          const struct run *r)
+{
+  double sharpest = CORNER, far = 0;
+  size_t at = 0;
+
+  for (size_t i = r->first + r->n; i < r->first + n; i++)
+    far = fmax(far, fabs(h->m.point[loop[i % n]][r->axis] - r->at));
+  for (size_t i = r->first + r->n; i < r->first + n; i++) {
+    const double off = fabs(h->m.point[loop[i % n]][r->axis] - r->at);
+    const double cosine = turn(h, n, loop, i);
+
+    if (off < FAR * far || cosine >= sharpest) continue;
+    sharpest = cosine;
+    at = i;
+  }
+  return at;
+}
+
+static vg_status close_in_parts(struct holes *h, size_t n, const uint32_t *loop,
+                                const struct run *r,
+                                const struct vg_size_function *law,
+                                size_t *n_cap, struct vg_error *err)
+{
+  const size_t corner = find_corner(h, n, loop, r);
+  uint32_t *memory = vg_alloc(n + 2 * VG_SPAN_MOST + 2, sizeof *memory);
+  struct part part = { 0, memory };
+  struct chords c = { .n = { 0 } };
+  vg_status st;
+
+  if (!memory) VG_TRY(vg_fail_memory(err, "the cap of a rim"));
+  for (size_t i = 0; i < 3; i++)
+    c.point[i] = memory + n + VG_SPAN_MOST + 2 + i * (VG_SPAN_MOST / 3);
+  if (corner)
+    VG_TRY(close_in_three(h, n, loop, r, corner, &c, &part, law, n_cap, err));
+  else VG_TRY(close_in_two(h, n, loop, r, &c, &part, law, n_cap, err));
+done:
+  free(memory);
   return st;
 }
 
@@ -317,7 +502,8 @@ static vg_status close_rim(struct holes *h, uint32_t k,
                            struct vg_error *err)
 {
   uint32_t p = h->rim[k].first, *loop = NULL;
-  size_t n = 0, cap = 0, first = 0, n_run = 0;
+  struct run run = { 0, 0, 0, 0 };
+  size_t n = 0, cap = 0;
   vg_status st = VG_OK;
 
   do {
@@ -326,9 +512,9 @@ static vg_status close_rim(struct holes *h, uint32_t k,
     loop[n++] = p;
     p = h->next[p];
   } while (p != h->rim[k].first);
-  if (!is_flat(h, n, loop, ONE_PLANE)) find_run(h, n, loop, &first, &n_run);
-  if (n_run > 2 && n_run < n && is_part(h, n, loop, first, n_run))
-    st = close_in_two(h, n, loop, first, n_run, law, n_cap, err);
+  if (!is_flat(h, n, loop, ONE_PLANE)) run = find_run(h, n, loop);
+  if (run.n > 2 && run.n < n && is_part(h, n, loop, run.first, run.n))
+    st = close_in_parts(h, n, loop, &run, law, n_cap, err);
   else st = close_loop(h, n, loop, law, n_cap, err);
 done:
   free(loop);
@@ -343,6 +529,7 @@ static vg_status prepare(struct holes *h, struct vg_error *err)
   vg_mesh_bounds(&h->m, h->lo, h->hi);
   for (int k = 0; k < 3; k++) length = fmax(length, h->hi[k] - h->lo[k]);
   h->tolerance = VG_PLANE_TOLERANCE * length;
+  h->length = length;
   VG_TRY(vg_open_edges(&h->m, &h->open, err));
   h->next = vg_alloc(h->m.n_point, sizeof *h->next);
   h->loop = vg_alloc(h->m.n_point, sizeof *h->loop);

@@ -68,6 +68,12 @@ struct vg_slices {
   void *user; /* private data of the server */
 };
 
+/* New coordinates of a point of the mesh. */
+struct vg_slices_point {
+  uint64_t id;
+  double x[3];
+};
+
 /** Call body for each slice that this rank serves, in threads. Returns the
  * failure of the lowest slice that failed. After a failure, remaining slices
  * may be skipped. */

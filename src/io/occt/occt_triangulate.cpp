@@ -286,13 +286,21 @@ public:
   }
 
 private:
+  /* The adaptive integration of Open CASCADE misses curved parts of some rims,
+   * and the one with a fixed number of points those of others, by up to 1 % of
+   * a face. The integral nearer to the area of the triangles is taken. */
   double area(const Face &f) const
   {
-    GProp_GProps g;
+    GProp_GProps adaptive, fixed, triangles;
 
     if (!ask_.with_volume) return NAN;
-    BRepGProp::SurfaceProperties(f.shape, g, area_near);
-    return std::fabs(g.Mass());
+    BRepGProp::SurfaceProperties(f.shape, adaptive, area_near);
+    BRepGProp::SurfaceProperties(f.shape, fixed);
+    BRepGProp::SurfaceProperties(f.shape, triangles, Standard_False,
+                                 Standard_True);
+    const double a = std::fabs(adaptive.Mass()), b = std::fabs(fixed.Mass()),
+                 near = std::fabs(triangles.Mass());
+    return std::fabs(a - near) <= std::fabs(b - near) ? a : b;
   }
 
   std::string between(const Face &f) const

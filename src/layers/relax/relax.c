@@ -15,8 +15,12 @@
 struct search {
   const struct vg_layers *layers;
   uint8_t *mark; /* [n_column] 1: a top of a flat cell that may move. */
-  /* Cells at these tops, in the order of the threads. */
   pthread_mutex_t lock;
+  /* Other points of these cells within the field, in the order of the threads,
+   * then ascending. */
+  size_t n_id, cap_id;
+  uint32_t *id;
+  /* Cells at these tops and points, in the order of the threads. */
   size_t n_cell, cap_cell;
   struct vg_relax_cell *cell;
 };
@@ -26,15 +30,29 @@ static double shape_of(const struct vg_slice *s, const uint32_t t[4])
   return vg_shape(s->x[t[0]], s->x[t[1]], s->x[t[2]], s->x[t[3]]);
 }
 
-/* Marks the tops of flat cells. */
+static vg_status list_points(struct search *q, const struct vg_slice *s,
+                             const uint32_t t[4], struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  pthread_mutex_lock(&q->lock);
+  if (vg_reserve(&q->id, &q->cap_id, q->n_id + 4, sizeof *q->id))
+    st = vg_fail_memory(err, "the cells on the layers");
+  for (int k = 0; k < 4 && st >= 0; k++)
+    if (s->id[t[k]] >= q->layers->front.n_point) q->id[q->n_id++] = s->id[t[k]];
+  pthread_mutex_unlock(&q->lock);
+  return st;
+}
+
+/* Marks the tops of flat cells, and lists the other points of these cells. */
 static vg_status mark_slice(void *context, const struct vg_slice *s,
                             struct vg_error *err)
 {
-  const struct search *q = context;
+  struct search *q = context;
   const uint32_t(*tet)[4] = (const uint32_t(*)[4])s->cell[VG_SLICE_TET];
+  vg_status st = VG_OK;
 
-  (void)err;
-  for (size_t i = 0; i < s->n_cell[VG_SLICE_TET]; i++) {
+  for (size_t i = 0; i < s->n_cell[VG_SLICE_TET] && st >= 0; i++) {
     uint32_t column[4];
     int n = 0;
 
@@ -46,15 +64,25 @@ static vg_status mark_slice(void *context, const struct vg_slice *s,
     }
     if (!n || shape_of(s, tet[i]) >= VG_RELAX_FLAT) continue;
     while (n--) __atomic_store_n(&q->mark[column[n]], 1, __ATOMIC_RELAXED);
+    st = list_points(q, s, tet[i], err);
   }
-  return VG_OK;
+  return st;
+}
+
+static int by_value(const void *a, const void *b)
+{
+  uint32_t s = *(const uint32_t *)a, t = *(const uint32_t *)b;
+
+  return s < t ? -1 : s > t;
 }
 
 static int is_marked(const struct search *q, uint32_t id)
 {
   uint32_t c = vg_relax_column_of(&q->layers->front, id);
 
-  return c != VG_NO_INDEX && q->mark[c];
+  if (c != VG_NO_INDEX) return q->mark[c];
+  return id >= q->layers->front.n_point && q->n_id &&
+         bsearch(&id, q->id, q->n_id, sizeof *q->id, by_value) != NULL;
 }
 
 static vg_status keep(struct search *q, const struct vg_slice *s,
@@ -77,7 +105,7 @@ static vg_status keep(struct search *q, const struct vg_slice *s,
   return st;
 }
 
-/* Keeps the cells at the marked tops. */
+/* Keeps the cells at the marked tops and the listed points. */
 static vg_status keep_slice(void *context, const struct vg_slice *s,
                             struct vg_error *err)
 {
@@ -146,6 +174,22 @@ done:
   return st;
 }
 
+/* Lists on every rank the points that any rank has listed. Collective. */
+static vg_status share_points(struct vg_comm *comm, struct search *q,
+                              struct vg_error *err)
+{
+  size_t n = 0;
+  vg_status st = gather(comm, sizeof *q->id, &q->n_id, (void **)&q->id, err);
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  if (q->n_id) qsort(q->id, q->n_id, sizeof *q->id, by_value);
+  for (size_t i = 0; i < q->n_id; i++)
+    if (!n || q->id[i] != q->id[n - 1]) q->id[n++] = q->id[i];
+  q->n_id = n;
+done:
+  return st;
+}
+
 /* --- moving the tops ----------------------------------------------------- */
 
 /* Applies the moves to the layers. The first rank of a node does it for the
@@ -169,20 +213,34 @@ static void apply(struct vg_layers *l, const struct vg_mesh *surface,
   }
 }
 
+/* Sends an array of the first rank to all. Collective. */
+static vg_status send_array(struct vg_comm *comm, size_t size, size_t *n,
+                            void **data, struct vg_error *err)
+{
+  struct vg_bytes b = { *n * size, *data };
+  vg_status st;
+
+  if (vg_comm_rank(comm)) b = (struct vg_bytes){ 0, NULL };
+  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
+  *data = b.data;
+  *n = b.n / size;
+done:
+  return st;
+}
+
 /* Sends the moves and the report of the first rank to all. Collective. */
-static vg_status send_moves(struct vg_comm *comm, size_t *n,
-                            struct vg_relax_move **move,
+static vg_status send_moves(struct vg_comm *comm, struct vg_relax_result *moved,
                             struct vg_relax_report *report,
                             struct vg_error *err)
 {
-  struct vg_bytes b = { *n * sizeof **move, (unsigned char *)*move };
   struct vg_bytes r = { sizeof *report, (unsigned char *)report };
   vg_status st;
 
-  if (vg_comm_rank(comm)) r = b = (struct vg_bytes){ 0, NULL };
-  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
-  *move = (struct vg_relax_move *)(void *)b.data;
-  *n = b.n / sizeof **move;
+  VG_TRY(send_array(comm, sizeof *moved->move, &moved->n_move,
+                    (void **)&moved->move, err));
+  VG_TRY(send_array(comm, sizeof *moved->point, &moved->n_point,
+                    (void **)&moved->point, err));
+  if (vg_comm_rank(comm)) r = (struct vg_bytes){ 0, NULL };
   VG_TRY(vg_comm_bcast(comm, 0, &r, err));
   if (!vg_comm_rank(comm)) return st;
   memcpy(report, r.data, sizeof *report);
@@ -193,28 +251,28 @@ done:
 
 static vg_status move_tops(struct vg_comm *comm, const struct vg_mesh *surface,
                            struct vg_layers *layers, struct search *q,
+                           struct vg_relax_result *moved,
                            struct vg_relax_report *report, struct vg_error *err)
 {
-  struct vg_relax_move *move = NULL;
-  size_t n_move = 0;
+  const struct vg_relax_input in = { q->mark, q->n_id, q->id, q->n_cell,
+                                     q->cell };
   vg_status st = VG_OK;
 
   if (!vg_comm_rank(comm))
-    st = vg_relax_tops(surface, layers, q->mark, q->n_cell, q->cell, &n_move,
-                       &move, report, err);
+    st = vg_relax_tops(surface, layers, &in, moved, report, err);
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(send_moves(comm, &n_move, &move, report, err));
+  VG_TRY(send_moves(comm, moved, report, err));
   if (!layers->common.is_mapped || !vg_comm_node_rank(comm))
-    apply(layers, surface, q->mark, n_move, move);
+    apply(layers, surface, q->mark, moved->n_move, moved->move);
   st = vg_comm_agree(comm, VG_OK, err);
 done:
-  free(move);
   return st;
 }
 
 vg_status vg_layers_relax(struct vg_comm *comm, const struct vg_mesh *surface,
                           struct vg_layers *layers,
                           const struct vg_slices *field, int threads,
+                          size_t *n_point, struct vg_slices_point **point,
                           struct vg_relax_report *report, struct vg_error *err)
 {
   assert(field->n_boundary_point == layers->front.n_point);
@@ -222,20 +280,30 @@ vg_status vg_layers_relax(struct vg_comm *comm, const struct vg_mesh *surface,
   struct search q = { .layers = layers,
                       .mark = vg_calloc(layers->columns.n_column, 1),
                       .lock = PTHREAD_MUTEX_INITIALIZER };
+  struct vg_relax_result moved = { 0, 0, NULL, NULL };
   size_t n_mark;
   vg_status st = q.mark ? VG_OK : vg_fail_memory(err, "the tops of the layers");
 
   *report = (struct vg_relax_report){ 0 };
+  *n_point = 0;
+  *point = NULL;
   if (st >= 0) st = vg_slices_each(field, threads, mark_slice, &q, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(share_marks(comm, &q, &n_mark, err));
+  VG_TRY(share_points(comm, &q, err));
   if (!n_mark) goto done;
   st = vg_slices_each(field, threads, keep_slice, &q, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   st = gather(comm, sizeof *q.cell, &q.n_cell, (void **)&q.cell, err);
   VG_TRY(vg_comm_agree(comm, st, err));
-  st = move_tops(comm, surface, layers, &q, report, err);
+  VG_TRY(move_tops(comm, surface, layers, &q, &moved, report, err));
+  *n_point = moved.n_point;
+  *point = moved.point;
+  moved.point = NULL;
 done:
+  free(moved.move);
+  free(moved.point);
+  free(q.id);
   free(q.mark);
   free(q.cell);
   return st;

@@ -33,17 +33,28 @@ static inline int vg_relax_may_move(const struct vg_column *c)
   return c->n > 1 && c->bent == SIZE_MAX;
 }
 
-/** Lowers columns until no move improves the worst cell of a top.
- *
- * @param mark  [n_column] 1: the column may move
- * @param cell  [n_cell] all cells of the field at the tops of these columns, in
- *              any order; sorted
- * @param move  out: [*n_move] columns lowered, ascending; owned by the caller
- * VG_ERR_MEMORY. */
+/* Points that may move, and the cells at them. */
+struct vg_relax_input {
+  const uint8_t *mark; /* [n_column] 1: the column may move. */
+  size_t n_id;
+  const uint32_t *id; /* [n_id] Points of the field that may move, ascending. */
+  size_t n_cell;
+  struct vg_relax_cell *cell; /* [n_cell] All cells of the field at these tops
+                                 and points, in any order; sorted. */
+};
+
+struct vg_relax_result {
+  size_t n_move, n_point;
+  struct vg_relax_move *move; /* [n_move] owned; columns lowered, ascending. */
+  struct vg_slices_point *point; /* [n_point] owned; ascending. */
+};
+
+/** Lowers columns and moves points until no move improves the worst cell of a
+ * top or a point. On failure *out is unchanged. VG_ERR_MEMORY. */
 vg_status vg_relax_tops(const struct vg_mesh *surface,
-                        const struct vg_layers *layers, const uint8_t *mark,
-                        size_t n_cell, struct vg_relax_cell *cell,
-                        size_t *n_move, struct vg_relax_move **move,
+                        const struct vg_layers *layers,
+                        const struct vg_relax_input *in,
+                        struct vg_relax_result *out,
                         struct vg_relax_report *report, struct vg_error *err);
 
 #endif

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Lowers tops one after the other, in the order of their columns. Declared in
- * layers/relax/relax_parts.h. */
+/* Lowers tops and moves points of the field one after the other, in the order
+ * of their columns and of their numbers. Declared in
+ * layers/relax/relax_parts.h.
+ *
+ * A mover is a top, or after the tops a point of the field. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,6 +11,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/shape.h"
+#include "core/geometry/vector.h"
 #include "layers/expand/stack.h"
 #include "layers/relax/relax_parts.h"
 
@@ -23,7 +27,10 @@
   1.05 /* Least improvement of the worst cell, as the square of a              \
           sine. */
 
-/* A list of items for each top: items [first[i] .. first[i + 1] - 1]. */
+#define LONG 0.25  /* L25: first step of a point, of its shortest edge, */
+#define HALVINGS 5 /* and how often it is halved. */
+
+/* A list of items for each mover: items [first[i] .. first[i + 1] - 1]. */
 struct lists {
   size_t *first;
   uint32_t *item;
@@ -33,14 +40,16 @@ struct tops {
   const struct vg_mesh *surface;
   const struct vg_front *front;
   struct vg_columns columns; /* With an own copy of the columns. */
-  size_t n_point, n_cell, n_top;
-  uint32_t *id;        /* [n_point] point of the field, ascending. */
-  double (*x)[3];      /* [n_point] */
-  uint32_t (*cell)[4]; /* [n_cell] points. */
-  uint32_t *top;       /* [n_top] column, ascending. */
-  uint32_t *top_of;    /* [n_column] index in top, or VG_NO_INDEX. */
-  uint32_t *point;     /* [n_top] point. */
-  double *least;       /* [n_top] least height of the column. */
+  size_t n_point, n_cell, n_top, n_free;
+  uint32_t *id;         /* [n_point] point of the field, ascending. */
+  double (*x)[3];       /* [n_point] */
+  uint32_t (*cell)[4];  /* [n_cell] points. */
+  uint32_t *top;        /* [n_top] column, ascending. */
+  uint32_t *top_of;     /* [n_column] index in top, or VG_NO_INDEX. */
+  uint32_t *point;      /* [n_top + n_free] point of each mover. */
+  const uint32_t *free; /* [n_free] points of the field that may move,
+                           ascending; borrowed. */
+  double *least;        /* [n_top] least height of the column. */
   struct lists cells, faces;
   struct vg_stack stack;
 };
@@ -104,7 +113,7 @@ static vg_status list_tops(struct tops *t, const uint8_t *mark,
 
   for (size_t i = 0; i < n_column; i++) t->n_top += mark[i];
   t->top = vg_alloc(t->n_top, sizeof *t->top);
-  t->point = vg_alloc(t->n_top, sizeof *t->point);
+  t->point = vg_alloc(t->n_top + t->n_free, sizeof *t->point);
   t->least = vg_alloc(t->n_top, sizeof *t->least);
   t->top_of = vg_alloc(n_column, sizeof *t->top_of);
   if (!t->top || !t->point || !t->least || !t->top_of)
@@ -121,34 +130,37 @@ static vg_status list_tops(struct tops *t, const uint8_t *mark,
 
     if (c != VG_NO_INDEX && mark[c]) t->point[t->top_of[c]] = (uint32_t)i;
   }
+  for (size_t i = 0; i < t->n_free; i++)
+    t->point[t->n_top + i] = index_of(t, t->free[i]);
   return VG_OK;
 }
 
-/* The lists of the items [n] whose k corners include a top; top_at gives the
- * top of a corner, or VG_NO_INDEX. */
+/* The lists of the items [n] whose k corners include a mover; mover_at gives
+ * the mover at a corner, or VG_NO_INDEX. */
 static vg_status make_lists(const struct tops *t, size_t n, int k,
-                            uint32_t (*top_at)(const struct tops *, size_t,
-                                               int),
+                            uint32_t (*mover_at)(const struct tops *, size_t,
+                                                 int),
                             struct lists *out, struct vg_error *err)
 {
+  const size_t n_mover = t->n_top + t->n_free;
   size_t total = 0;
 
-  out->first = vg_calloc(t->n_top + 2, sizeof *out->first);
+  out->first = vg_calloc(n_mover + 2, sizeof *out->first);
   if (!out->first) return vg_fail_memory(err, "the tops of the layers");
   for (size_t i = 0; i < n; i++)
     for (int j = 0; j < k; j++) {
-      uint32_t top = top_at(t, i, j);
+      uint32_t m = mover_at(t, i, j);
 
-      if (top != VG_NO_INDEX) out->first[top + 2]++, total++;
+      if (m != VG_NO_INDEX) out->first[m + 2]++, total++;
     }
   out->item = vg_alloc(total, sizeof *out->item);
   if (!out->item) return vg_fail_memory(err, "the tops of the layers");
-  for (size_t i = 0; i < t->n_top; i++) out->first[i + 2] += out->first[i + 1];
+  for (size_t i = 0; i < n_mover; i++) out->first[i + 2] += out->first[i + 1];
   for (size_t i = 0; i < n; i++)
     for (int j = 0; j < k; j++) {
-      uint32_t top = top_at(t, i, j);
+      uint32_t m = mover_at(t, i, j);
 
-      if (top != VG_NO_INDEX) out->item[out->first[top + 1]++] = (uint32_t)i;
+      if (m != VG_NO_INDEX) out->item[out->first[m + 1]++] = (uint32_t)i;
     }
   return VG_OK;
 }
@@ -158,11 +170,16 @@ static uint32_t top_of_face(const struct tops *t, size_t f, int k)
   return t->top_of[t->columns.face[f][k]];
 }
 
-static uint32_t top_of_cell(const struct tops *t, size_t i, int k)
+static uint32_t mover_of_cell(const struct tops *t, size_t i, int k)
 {
-  uint32_t c = vg_relax_column_of(t->front, t->id[t->cell[i][k]]);
+  const uint32_t id = t->id[t->cell[i][k]];
+  const uint32_t c = vg_relax_column_of(t->front, id);
+  const uint32_t *at;
 
-  return c == VG_NO_INDEX ? VG_NO_INDEX : t->top_of[c];
+  if (c != VG_NO_INDEX) return t->top_of[c];
+  if (id < t->front->n_point || !t->n_free) return VG_NO_INDEX;
+  at = bsearch(&id, t->free, t->n_free, sizeof *t->free, by_value);
+  return at ? (uint32_t)(t->n_top + (size_t)(at - t->free)) : VG_NO_INDEX;
 }
 
 /* --- moves --------------------------------------------------------------- */
@@ -174,17 +191,17 @@ static double shape_of(const struct tops *t, size_t cell)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-/* Cells at a top. */
+/* Cells at a mover. */
 struct quality {
   double least; /* Least shape. */
   size_t n_flat;
 };
 
-static struct quality quality_of(const struct tops *t, size_t top)
+static struct quality quality_of(const struct tops *t, size_t mover)
 {
   struct quality q = { INFINITY, 0 };
 
-  for (size_t i = t->cells.first[top]; i < t->cells.first[top + 1]; i++) {
+  for (size_t i = t->cells.first[mover]; i < t->cells.first[mover + 1]; i++) {
     double shape = shape_of(t, t->cells.item[i]);
 
     q.least = fmin(q.least, shape);
@@ -248,6 +265,56 @@ static int lower(struct tops *t, size_t top)
   return best < cap;
 }
 
+/* Length of the shortest edge of the cells at a point. */
+static double shortest(const struct tops *t, size_t mover)
+{
+  const double *x = t->x[t->point[mover]];
+  double least = INFINITY;
+
+  for (size_t i = t->cells.first[mover]; i < t->cells.first[mover + 1]; i++)
+    for (int k = 0; k < 4; k++) {
+      const uint32_t p = t->cell[t->cells.item[i]][k];
+
+      if (p != t->point[mover]) least = fmin(least, vg_distance(x, t->x[p]));
+    }
+  return least;
+}
+
+/* Moves a point of the field by the step along the axis that is best for its
+ * worst cell. Returns 0 if none improves it. */
+static int step_point(struct tops *t, size_t mover, double step)
+{
+  const struct quality before = quality_of(t, mover);
+  double *x = t->x[t->point[mover]], least = fmax(GAIN * before.least, 0);
+  int best = -1;
+
+  for (int k = 0; k < 6; k++) {
+    const double old = x[k / 2];
+    struct quality q;
+
+    x[k / 2] += k % 2 ? -step : step;
+    q = quality_of(t, mover);
+    x[k / 2] = old;
+    if (!(q.least > least) || q.n_flat > before.n_flat) continue;
+    least = q.least;
+    best = k;
+  }
+  if (best >= 0) x[best / 2] += best % 2 ? -step : step;
+  return best >= 0;
+}
+
+/* Moves a point of the field to where its worst cell is better. */
+static int move_point(struct tops *t, size_t mover)
+{
+  double step = LONG * shortest(t, mover);
+  int moved = 0;
+
+  if (!quality_of(t, mover).n_flat) return 0;
+  for (int k = 0; k <= HALVINGS; k++, step /= 2)
+    while (step_point(t, mover, step)) moved = 1;
+  return moved;
+}
+
 static size_t count_flat(const struct tops *t)
 {
   size_t n = 0;
@@ -256,40 +323,54 @@ static size_t count_flat(const struct tops *t)
   return n;
 }
 
+/* The columns and points that moved. x: [n_free] old coordinates. */
 static vg_status list_moves(const struct tops *t, const struct vg_columns *old,
-                            size_t *n, struct vg_relax_move **out,
+                            const double (*x)[3], struct vg_relax_result *out,
                             struct vg_error *err)
 {
   struct vg_relax_move *m = vg_calloc(t->n_top, sizeof *m);
+  struct vg_slices_point *q = vg_calloc(t->n_free, sizeof *q);
+  struct vg_relax_result r = { 0, 0, m, q };
 
-  if (!m) return vg_fail_memory(err, "the tops of the layers");
-  *n = 0;
+  if (!m || !q) {
+    free(m);
+    free(q);
+    return vg_fail_memory(err, "the tops of the layers");
+  }
   for (size_t i = 0; i < t->n_top; i++) {
     double cap = t->columns.column[t->top[i]].cap;
 
     if (cap == old->column[t->top[i]].cap) continue;
-    m[*n].column = t->top[i];
-    m[(*n)++].cap = cap;
+    m[r.n_move].column = t->top[i];
+    m[r.n_move++].cap = cap;
   }
-  *out = m;
+  for (size_t i = 0; i < t->n_free; i++) {
+    const double *now = t->x[t->point[t->n_top + i]];
+
+    if (!memcmp(now, x[i], sizeof x[i])) continue;
+    q[r.n_point].id = t->free[i];
+    memcpy(q[r.n_point++].x, now, sizeof q->x);
+  }
+  *out = r;
   return VG_OK;
 }
 
 static vg_status prepare(struct tops *t, const struct vg_layers *layers,
-                         const uint8_t *mark, size_t n_cell,
-                         const struct vg_relax_cell *cell, struct vg_error *err)
+                         const struct vg_relax_input *in, struct vg_error *err)
 {
   size_t n = layers->columns.n_column;
   vg_status st;
 
+  t->n_free = in->n_id;
+  t->free = in->id;
   t->columns.column = vg_alloc(n, sizeof *t->columns.column);
   if (!t->columns.column) return vg_fail_memory(err, "the layers");
   if (n)
     memcpy(t->columns.column, layers->columns.column,
            n * sizeof *t->columns.column);
-  VG_TRY(number_points(t, n_cell, cell, err));
-  VG_TRY(list_tops(t, mark, err));
-  VG_TRY(make_lists(t, n_cell, 4, top_of_cell, &t->cells, err));
+  VG_TRY(number_points(t, in->n_cell, in->cell, err));
+  VG_TRY(list_tops(t, in->mark, err));
+  VG_TRY(make_lists(t, in->n_cell, 4, mover_of_cell, &t->cells, err));
   st = make_lists(t, t->columns.n_face, 3, top_of_face, &t->faces, err);
 done:
   return st;
@@ -313,31 +394,37 @@ static void release(struct tops *t)
 }
 
 vg_status vg_relax_tops(const struct vg_mesh *surface,
-                        const struct vg_layers *layers, const uint8_t *mark,
-                        size_t n_cell, struct vg_relax_cell *cell,
-                        size_t *n_move, struct vg_relax_move **move,
+                        const struct vg_layers *layers,
+                        const struct vg_relax_input *in,
+                        struct vg_relax_result *out,
                         struct vg_relax_report *report, struct vg_error *err)
 {
   struct tops *t = vg_calloc(1, sizeof *t);
-  vg_status st;
+  double(*x)[3] = vg_alloc(in->n_id, sizeof *x);
+  vg_status st = VG_OK;
 
-  if (!t) return vg_fail_memory(err, "the tops of the layers");
+  if (!t || !x) VG_TRY(vg_fail_memory(err, "the tops of the layers"));
   t->surface = surface;
   t->front = &layers->front;
   t->columns = layers->columns;
   t->columns.column = NULL;
-  if (n_cell) qsort(cell, n_cell, sizeof *cell, by_ids);
-  VG_TRY(prepare(t, layers, mark, n_cell, cell, err));
+  if (in->n_cell) qsort(in->cell, in->n_cell, sizeof *in->cell, by_ids);
+  VG_TRY(prepare(t, layers, in, err));
   for (size_t i = 0; i < t->n_top; i++) t->least[i] = LEAST * height(t, i);
+  for (size_t i = 0; i < t->n_free; i++)
+    memcpy(x[i], t->x[t->point[t->n_top + i]], sizeof *x);
   report->n_flat = count_flat(t);
   for (int round = 0, moved = 1; moved && round < ROUNDS; round++) {
     moved = 0;
     for (size_t i = 0; i < t->n_top; i++) moved |= lower(t, i);
+    for (size_t i = 0; i < t->n_free; i++) moved |= move_point(t, t->n_top + i);
   }
   report->n_left = count_flat(t);
-  VG_TRY(list_moves(t, &layers->columns, n_move, move, err));
-  report->n_column = *n_move;
+  VG_TRY(list_moves(t, &layers->columns, (const double(*)[3])x, out, err));
+  report->n_column = out->n_move;
+  report->n_point = out->n_point;
 done:
-  release(t);
+  free(x);
+  if (t) release(t);
   return st;
 }

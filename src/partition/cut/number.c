@@ -234,3 +234,31 @@ done:
   free(s);
   return st;
 }
+
+/* --- moving points ------------------------------------------------------- */
+
+static int by_id(const void *a, const void *b)
+{
+  const struct vg_slices_point *s = a, *t = b;
+
+  return s->id < t->id ? -1 : s->id > t->id;
+}
+
+void vg_partition_move_points(struct vg_partition *p, size_t n,
+                              const struct vg_slices_point *point)
+{
+  for (size_t i = 0; i < p->n_piece && n; i++) {
+    struct vg_piece *q = &p->piece[i];
+
+    for (size_t k = 0; k < q->n_in + q->n_point; k++) {
+      const struct vg_slices_point key = {
+        .id = k < q->n_in ? id_of(p, q->in[k]) : p->point_at[i] + k - q->n_in
+      };
+      const struct vg_slices_point *at;
+
+      if (key.id < point[0].id || key.id > point[n - 1].id) continue;
+      at = bsearch(&key, point, n, sizeof key, by_id);
+      if (at) memcpy(q->x[k], at->x, sizeof *q->x);
+    }
+  }
+}

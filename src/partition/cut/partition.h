@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "base/stop.h"
 #include "core/fill/fill.h"
+#include "core/mesh/slices.h"
 #include "core/mesher/fill_with.h"
 #include "partition/cut/lattice.h"
 #include "partition/cut/decomposition.h"
@@ -114,5 +115,12 @@ extern const struct vg_entries vg_partition_entries, vg_decomposition_entries;
 
 /** The cells of a void, on the ranks that made them. */
 struct vg_partition;
+
+/** Moves points of the field; cells keep their points. Every rank gives the
+ * same points. O(n_point log n).
+ *
+ * @param point  [n] ascending; ids as in the slices, none of the front */
+void vg_partition_move_points(struct vg_partition *p, size_t n,
+                              const struct vg_slices_point *point);
 
 #endif

@@ -278,7 +278,7 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
 {
   const struct vg_layer_report *r = &s->report;
   const struct vg_join_info *j = &s->join;
-  char a[32], b[32], c[32];
+  char a[32], b[32], c[32], d[32];
 
   fprintf(to, "  %s columns on %s wall points, %s wall triangles",
           vg_text_count(r->n_column, a), vg_text_count(r->n_wall_point, b),
@@ -309,10 +309,11 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
     fprintf(to,
             "  field cells on the layers with an angle below 10 or above 170 "
             "degrees: %s after the\n  fill, %s after lowering the tops of %s "
-            "columns\n",
+            "columns and moving %s points\n",
             vg_text_count(s->relax.n_flat, a),
             vg_text_count(s->relax.n_left, b),
-            vg_text_count(s->relax.n_column, c));
+            vg_text_count(s->relax.n_column, c),
+            vg_text_count(s->relax.n_point, d));
   if (r->n_many_faces)
     fprintf(to,
             "  columns with more than %d faces, for which not all rays are "
@@ -527,6 +528,7 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "flat_cells_after_fill", s->relax.n_flat },
     { "flat_cells_left", s->relax.n_left },
     { "columns_lowered_after_fill", s->relax.n_column },
+    { "points_moved_after_fill", s->relax.n_point },
     { "slide_triangles", r->n_slide_tri },
     { "complete_prisms", s->judgement.n_prism },
     { "prisms_with_bad_corner", s->judgement.n_bad_corner },

@@ -646,16 +646,21 @@ done:
   return st;
 }
 
-/* Lowers tops of layers under flat cells of the field. */
+/* Lowers tops of layers under flat cells of the field, and moves points of the
+ * field there. */
 static vg_status relax_tops(struct vg_run *r, const struct vg_problem *p,
                             struct vg_layer_stage *layers, struct vg_error *err)
 {
   double t = vg_display_now();
+  struct vg_slices_point *point;
+  size_t n_point;
   vg_status st = vg_layers_relax(r->comm, &p->boundary.surface, &layers->layers,
                                  vg_partition_slices(r->field), r->threads,
-                                 &layers->relax, err);
+                                 &n_point, &point, &layers->relax, err);
 
   if (st < 0) return st;
+  vg_partition_move_points(r->field, n_point, point);
+  free(point);
   layers->time_relax = vg_display_now() - t;
   if (!layers->relax.n_column) return VG_OK;
   vg_partition_move_front(r->field);
