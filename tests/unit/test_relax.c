@@ -325,12 +325,16 @@ static void every_call_fails(void **state)
   c.s.get = get_slice;
   for (long last = 1, at = LONG_MAX; last; at = at == LONG_MAX ? 1 : at + 1) {
     struct vg_error err = VG_ERROR_INIT;
+    struct vg_slices_point *moved = NULL;
+    size_t n_moved = 0;
     vg_status st;
 
     n_call = 0;
     fails_at = at;
-    st = vg_layers_relax(NULL, &m.surface, &m.layers, &c.s, 1, &r, &err);
+    st = vg_layers_relax(NULL, &m.surface, &m.layers, &c.s, 1, &n_moved, &moved,
+                         &r, &err);
     fails_at = 0;
+    free(moved);
     last = n_call >= at || at == LONG_MAX;
     n_failed += st < 0;
     assert_true(st == VG_OK || (st == VG_ERR_MEMORY && *err.text));

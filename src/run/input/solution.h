@@ -27,8 +27,8 @@ struct vg_solution {
 
 /** Read fields of a solution and the mesh of their points.
  *
- * @param path    a .vtu with point or cell arrays; a .cgns with one zone and a solution
- *                at its points; the folder of an OpenFOAM case or of
+ * @param path    a .vtu with point or cell arrays; a .cgns with one zone and a
+ *                solution at its points; the folder of an OpenFOAM case or of
  *                one of its times (values in the cells become values at the
  *                points, core/hessian/point_values.h); Medit's .sol or .solb
  *                with one scalar, next to the mesh of the same name; or a .csv
