@@ -326,12 +326,12 @@ static void every_call_fails(void **state)
   for (long last = 1, at = LONG_MAX; last; at = at == LONG_MAX ? 1 : at + 1) {
     struct vg_error err = VG_ERROR_INIT;
     struct vg_slices_point *moved = NULL;
-    size_t n_moved = 0;
+    size_t n_gone = 0;
     vg_status st;
 
     n_call = 0;
     fails_at = at;
-    st = vg_layers_relax(NULL, &m.surface, &m.layers, &c.s, 1, &n_moved, &moved,
+    st = vg_layers_relax(NULL, &m.surface, &m.layers, &c.s, 1, &n_gone, &moved,
                          &r, &err);
     fails_at = 0;
     free(moved);
