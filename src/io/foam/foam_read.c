@@ -319,7 +319,7 @@ int vg_foam_is_case(const char *path)
   return is;
 }
 
-/* The folder with the largest number as its name; "" if there is none. */
+/* The folder with the largest number as its name; "" without one. */
 static vg_status last_time(const char *folder, char **time,
                            struct vg_error *err)
 {
