@@ -346,6 +346,50 @@ static void a_sheet_through_a_hole(void **state)
   vg_mesh_release(&s.m);
 }
 
+/* A triangle and the same one moved in its plane, turned around an edge, and
+ * next to it, in random positions. */
+static void triangles_overlap(void **state)
+{
+  uint64_t seed = 5;
+
+  (void)state;
+  for (int round = 0; round < 200; round++) {
+    double s[3][3], t[3][3], n[3], u[3], v[3];
+
+    for (int i = 0; i < 9; i++) s[i / 3][i % 3] = random_in(&seed, 0, 4);
+    vg_sub(s[1], s[0], u);
+    vg_sub(s[2], s[0], v);
+    vg_cross(u, v, n);
+    if (!(vg_unit(n) > 0.5)) continue;
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) t[i][k] = s[i][k] + 0.2 * (u[k] + v[k]);
+    assert_true(
+      vg_junction_overlap((const double(*)[3])s, (const double(*)[3])t, 1e-9));
+    /* Off the plane. */
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) t[i][k] += 1e-3 * n[k];
+    assert_false(
+      vg_junction_overlap((const double(*)[3])s, (const double(*)[3])t, 1e-9));
+    /* The neighbour across the edge u, in the plane, and turned out of it. */
+    for (int k = 0; k < 3; k++) {
+      t[0][k] = s[1][k];
+      t[1][k] = s[0][k];
+      t[2][k] = s[0][k] + u[k] - v[k];
+    }
+    assert_false(
+      vg_junction_overlap((const double(*)[3])s, (const double(*)[3])t, 1e-9));
+    for (int k = 0; k < 3; k++) t[2][k] = s[2][k] + n[k];
+    assert_false(
+      vg_junction_overlap((const double(*)[3])s, (const double(*)[3])t, 1e-9));
+    /* One inside the other. */
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++)
+        t[i][k] = (s[0][k] + s[1][k] + s[2][k] + s[i][k]) / 4;
+    assert_true(
+      vg_junction_overlap((const double(*)[3])t, (const double(*)[3])s, 1e-9));
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -354,6 +398,7 @@ int main(void)
     cmocka_unit_test(random_sheets_are_clipped),
     cmocka_unit_test(sheets_snap_to_sharp_edges),
     cmocka_unit_test(a_sheet_through_a_hole),
+    cmocka_unit_test(triangles_overlap),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

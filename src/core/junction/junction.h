@@ -151,6 +151,11 @@ vg_status vg_junction_clip(struct vg_mesh *m, size_t n_wall,
 vg_status vg_junction_mend(struct vg_mesh *m, size_t *n_wall, double most,
                            struct vg_error *err);
 
+/** Do two triangles overlap in one plane? They do if the corners of t are at
+ * most `most` from the plane of s and more than an edge is common to both. */
+int vg_junction_overlap(const double s[3][3], const double t[3][3],
+                        double most);
+
 /** Drop triangles with two equal corners, which rounding leaves. Returns the
  * number of those of walls, the first n_wall ones, that are left. */
 size_t vg_junction_drop_flat(struct vg_mesh *m, size_t n_wall);

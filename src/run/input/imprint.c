@@ -19,8 +19,37 @@
 #define SNAP 1e-5 /* S106: of the length of the walls */
 #define ROOM 0.05 /* S116: around a farfield, of its length */
 
+/* Inner surfaces that overlap in one plane have no curve in common along which
+ * they could be divided. */
+static vg_status refuse_overlap(const struct vg_boundary *b,
+                                const struct vg_mesh *all,
+                                const struct vg_defect *d, struct vg_error *err)
+{
+  const struct vg_patch *p[2];
+  double x[2][3][3];
+
+  for (int i = 0; i < 2; i++) {
+    if (d->face[i] < b->surface.n_tri) return VG_OK;
+    p[i] = &all->patch[all->tri_patch[d->face[i]]];
+    for (int k = 0; k < 3; k++)
+      memcpy(x[i][k], all->point[all->tri[d->face[i]][k]], sizeof x[i][k]);
+  }
+  if (p[0] == p[1] ||
+      !vg_junction_overlap((const double(*)[3])x[0], (const double(*)[3])x[1],
+                           SNAP * vg_boundary_length(b)))
+    return VG_OK;
+  return vg_fail(
+    err, VG_ERR_GEOMETRY,
+    "patches %d %s and %d %s, inner surfaces, overlap in one plane "
+    "at (%g, %g, %g): remove the common part from one of them, or "
+    "move one of them out of the plane",
+    (int)p[0]->id, p[0]->name, (int)p[1]->id, p[1]->name, d->at[0], d->at[1],
+    d->at[2]);
+}
+
 /* Does an inner surface of `all` intersect a wall or another one? first: the
- * first such pair of triangles; may be NULL. */
+ * first such pair of triangles; may be NULL. VG_ERR_GEOMETRY: two of them
+ * overlap. */
 static vg_status find_crossings(const struct vg_boundary *b,
                                 struct vg_mesh *all, struct vg_display *show,
                                 int *any, struct vg_defect *first,
@@ -32,12 +61,15 @@ static vg_status find_crossings(const struct vg_boundary *b,
 
   VG_TRY(vg_surface_check(all, &o, &r, err));
   *any = 0;
-  for (size_t i = 0; i < r.n_defect && !*any; i++) {
+  for (size_t i = 0; i < r.n_defect; i++) {
     const struct vg_defect *d = &r.defect[i];
 
-    *any = d->kind == VG_DEFECT_INTERSECTION &&
-           (d->face[0] >= b->surface.n_tri || d->face[1] >= b->surface.n_tri);
-    if (*any && first) *first = *d;
+    if (d->kind != VG_DEFECT_INTERSECTION ||
+        (d->face[0] < b->surface.n_tri && d->face[1] < b->surface.n_tri))
+      continue;
+    if (!*any && first) *first = *d;
+    *any = 1;
+    VG_TRY(refuse_overlap(b, all, d, err));
   }
 done:
   vg_surface_report_release(&r);
@@ -446,8 +478,7 @@ static void mark_added(const struct vg_boundary *b,
   }
 }
 
-/* Sizes are those of the field: a generated boundary has no shape to keep
- * */
+/* Sizes are those of the field: a generated boundary has no shape to keep. */
 static struct vg_remesh_options outer_options(const struct vg_boundary *b,
                                               double spacing,
                                               struct vg_display *show)

@@ -177,3 +177,16 @@ exits 0
 vanguard check equator/equator.b8.ugrid
 exits 0
 says out "valid"
+
+# Sheets that overlap in one plane are refused by name; those that meet there in an
+# edge that they divide differently are divided alike.
+duct coplanar "p 4 4  0.5 0.25 0.25  0 0.4 0  0 0 0.4" \
+  "q 4 4  0.5 0.33 0.37  0 0.4 0  0 0 0.4"
+vanguard mesh coplanar.stl --flow internal --sheets p,q --remesh-surface yes \
+  --quiet --out coplanar
+exits 1
+says err "patches 7 p and 8 q, inner surfaces, overlap in one plane at (0.5, "
+absent coplanar/coplanar.b8.ugrid
+duct beside "p 4 4  0.5 0.25 0.25  0 0.4 0  0 0 0.4" \
+  "q 3 5  0.5 0.65 0.25  0 0.3 0  0 0 0.4"
+valid beside --sheets p,q --remesh-surface yes
