@@ -23,7 +23,8 @@
 #
 # gmsh meshes CAD files with `-algo front2d`; a factor on its sizes is sought
 # until its number of triangles is within 5 % of ours. Its time is that of the
-# whole program as well. Needs: jq, time, taskset; gmsh if it is installed.
+# whole program as well; it is ended after two minutes. Needs: jq, time,
+# taskset; gmsh if it is installed.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -100,7 +101,7 @@ remesh() {
 
 # Triangles that gmsh makes of INPUT with the factor on its sizes.
 gmsh_triangles() {
-  taskset -c "$core" /usr/bin/time -o "$work/gmsh.time" -f '%U %S' timeout 600 \
+  taskset -c "$core" /usr/bin/time -o "$work/gmsh.time" -f '%U %S' timeout 120 \
     gmsh -2 -algo front2d -nt 1 -clmax "$(jq .remesh.size_max "$work/report-one")" \
     -clcurv 24 -clscale "$2" -format msh22 -o "$work/gmsh.msh" "$1" \
     >"$work/gmsh.log" 2>&1 || return 1

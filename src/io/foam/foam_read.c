@@ -358,16 +358,25 @@ vg_status vg_foam_case_read(const char *path, struct vg_foam_case *c,
                             struct vg_error *err)
 {
   struct vg_foam_lists l = VG_FOAM_LISTS_INIT;
-  char *folder = NULL;
+  char *folder = NULL, *moved = NULL;
   vg_status st;
 
   VG_TRY(find_case(path, c, err));
   folder = below(c->folder, "constant/polyMesh");
-  if (!folder) {
+  moved = below(*c->time ? c->time : c->folder, "polyMesh");
+  if (!folder || !moved) {
     st = vg_fail_memory(err, "a file name");
     goto done;
   }
-  VG_TRY(read_points(folder, &l, err));
+  if (has_file(moved, "faces")) {
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: the faces of the mesh change with time, which is not "
+                 "read; write the solution with foamToVTK",
+                 moved);
+    goto done;
+  }
+  /* A mesh that moves has points of its own at each time. */
+  VG_TRY(read_points(has_file(moved, "points") ? moved : folder, &l, err));
   VG_TRY(read_faces(folder, &l, err));
   VG_TRY(read_sides(folder, &l, err));
   VG_TRY(read_boundary(folder, &l, err));
@@ -376,5 +385,6 @@ vg_status vg_foam_case_read(const char *path, struct vg_foam_case *c,
 done:
   vg_foam_lists_release(&l);
   free(folder);
+  free(moved);
   return st;
 }

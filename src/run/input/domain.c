@@ -35,7 +35,9 @@ struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
   struct vg_flow_options o = vg_options_flow(&b->read->settings,
                                              b->read->has_cells);
 
-  if (o.kind == VG_FLOW_UNKNOWN && vg_mesh_has_interfaces(&b->surface)) {
+  if (o.kind == VG_FLOW_UNKNOWN &&
+      b->read->settings.cad.solids == VG_CAD_SOLIDS_ZONES &&
+      vg_mesh_has_interfaces(&b->surface)) {
     o.kind = VG_FLOW_INTERNAL;
     o.asked_by = "cad_solids zones";
   }

@@ -19,8 +19,8 @@
 #define SNAP 1e-5 /* S106: of the length of the walls */
 #define ROOM 0.05 /* S116: around a farfield, of its length */
 
-/* Inner surfaces that overlap in one plane have no curve in common along which
- * they could be divided. */
+/* Inner surfaces that overlap in one plane share no curve along which they
+ * could be divided. */
 static vg_status refuse_overlap(const struct vg_boundary *b,
                                 const struct vg_mesh *all,
                                 const struct vg_defect *d, struct vg_error *err)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/memory.h"
 #include "core/hessian/point_values.h"
@@ -431,6 +432,7 @@ vg_status vg_solution_read(const char *path, const char *names,
                            struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
+  struct stat about;
   vg_status st;
 
   if (vg_text_ends(path, ".csv")) return read_csv(path, names, mesh, s, err);
@@ -441,6 +443,12 @@ vg_status vg_solution_read(const char *path, const char *names,
       "to it",
       path);
   if (vg_foam_is_case(path)) return read_case(path, names, s, err);
+  if (!stat(path, &about) && S_ISDIR(about.st_mode))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: this folder is neither an OpenFOAM case with a mesh in "
+                   "constant/polyMesh nor one of its times; the parts of a "
+                   "decomposed case are joined by reconstructPar",
+                   path);
   if (vg_text_ends(path, ".sol") || vg_text_ends(path, ".solb"))
     return read_sol(path, names, s, err);
   if (!vg_text_ends(path, ".vtu") && !vg_text_ends(path, ".cgns"))

@@ -221,6 +221,8 @@ void vg_boundary_suggest_wrap(struct vg_boundary *b, struct vg_display *show,
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
              wrap, reason == VG_WRAP_HOLES ? " and bridges its holes" : "");
-  if (reason == VG_WRAP_FITS && wrap <= FINE_WRAP * vg_boundary_length(b))
+  /* Where caps were requested, a wrap would replace what they failed to do. */
+  if (reason == VG_WRAP_FITS && !b->read->settings.close_holes &&
+      wrap <= FINE_WRAP * vg_boundary_length(b))
     b->cure.wrap = as_printed(wrap);
 }

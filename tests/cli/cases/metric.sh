@@ -164,6 +164,22 @@ refused() {
   absent z.vtu z.solb z.meshb
 }
 refused "its point arrays are: U; its cell arrays are: p" s.vtu --cells 10 --field q --out z.vtu
+# A mesh that moves: the points of the time.
+mkdir c2/box.openfoam/12/polyMesh
+cp c1/box.openfoam/constant/polyMesh/points c2/box.openfoam/12/polyMesh
+vanguard metric c2/box.openfoam --field Ma --cells 5000 --out i.vtu
+exits 0
+same h.vtu i.vtu
+awk '/^\([-0-9. e+]*\)$/ { gsub(/[()]/, ""); print "(" 3 * $1, 3 * $2, 3 * $3 ")"; next }
+  { print }' c1/box.openfoam/constant/polyMesh/points \
+  >c2/box.openfoam/12/polyMesh/points
+vanguard metric c2/box.openfoam --field Ma --cells 5000 --out j.vtu
+exits 0
+! cmp -s i.vtu j.vtu || fail "the points of the time were not used"
+cp c1/box.openfoam/constant/polyMesh/faces c2/box.openfoam/12/polyMesh
+refused "the faces of the mesh change with time" c2/box.openfoam --cells 10 \
+  --field Ma --out z.vtu
+refused "neither an OpenFOAM case" c2 --cells 10 --field Ma --out z.vtu
 refused "it is linear" c1/box.openfoam/0 --cells 10 --field Ma --out z.vtu
 refused "there is no field 'q'; its files are: Ma" c1/box.openfoam --cells 10 \
   --field q --out z.vtu

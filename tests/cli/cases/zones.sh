@@ -190,6 +190,19 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   done
 else echo "mpirun does not work here: ranks are omitted"; fi
 
+# An interface around a body leaves the flow domain to the search: the body is
+# in open air, and the zone around it.
+duct air "rot 6 6  -.5 -.5 -.5  2 0 0  0 2 0" "rot 6 6  -.5 -.5 1.5  2 0 0  0 2 0" \
+  "rot 6 6  -.5 -.5 -.5  2 0 0  0 0 2" "rot 6 6  -.5 1.5 -.5  2 0 0  0 0 2" \
+  "rot 6 6  -.5 -.5 -.5  0 2 0  0 0 2" "rot 6 6  1.5 -.5 -.5  0 2 0  0 0 2"
+vanguard mesh air.stl --zone-interfaces rot --quiet --layers no \
+  --farfield-lengths 3 --growth 1.6 --write b8.ugrid --out air
+exits 0
+says out "External flow around 1 closed body; farfield added"
+vanguard check air/air.b8.ugrid
+exits 0
+says out "valid"
+
 # A run that is killed, and resumed with other threads.
 set -- mesh two.stl --flow internal --quiet --zone-interfaces rot,in \
   --walls 'rot,in,w*' --first 0.004 --cells mixed --leaf-cells 2000 --hmax 0.07 --write b8.ugrid,vtu,msh --out resumed \
