@@ -38,8 +38,8 @@ int vg_foam_is_case(const char *path);
  * @param path  folder of the case, whose last time is chosen, or of a time
  * @param c     empty; release it in any case
  *
- * Points are those of the time, if the mesh moves. Patches are numbered in their
- * order, without conditions. Zones are not read.
+ * Points are those of the time, if the mesh moves. Patches are numbered in
+ * their order, without conditions. Zones are not read.
  * VG_ERR_IO, VG_ERR_FORMAT: a file is missing or damaged. VG_ERR_UNSUPPORTED: a
  * cell of another kind, named with its number and a point. VG_ERR_MEMORY. */
 vg_status vg_foam_case_read(const char *path, struct vg_foam_case *c,
