@@ -32,6 +32,9 @@
 /* A complexity that differs by more is noted. */
 #define NEAR 0.02
 
+/* Largest number of cells: more than any machine holds. */
+#define MOST_CELLS 1e12
+
 enum {
   KEY_FIELD = 500,
   KEY_CELLS,
@@ -356,6 +359,8 @@ static void check(const struct arguments *a, const struct argp_state *state)
 {
   if (!a->in) argp_error(state, "give the file of a solution");
   if (!(a->cells > 0)) argp_error(state, "give the number of cells by --cells");
+  if (a->cells > MOST_CELLS)
+    argp_error(state, "--cells %g is more than %g", a->cells, MOST_CELLS);
   if (a->o.h_min >= a->o.h_max)
     argp_error(state, "--h-min %g is not below --h-max %g", a->o.h_min,
                a->o.h_max);

@@ -297,10 +297,12 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
             "per point: %.2f\n",
             100 * j->wall_quads, vg_join_density(j));
   if (j->cells == VG_LAYER_HEX && !(j->wall_quads > 0))
-    fputs("  no hexahedra: the layers are too few or too thin compared with "
-          "the edges of\n  the wall for a transition level, or the triangles "
-          "do not pair\n",
-          to);
+    fputs(
+      "  no hexahedra: the layers are too few or too thin compared with "
+      "the edges of\n  the wall for a transition level, or the triangles "
+      "do not pair; those of sheets and\n  interfaces never do, and those of "
+      "baffles only with layers on both sides\n",
+      to);
   fprintf(to,
           "  rounds of height reduction until free of collisions: %zu; slide "
           "patches remeshed: %zu, %s triangles\n",

@@ -180,6 +180,8 @@ cp c1/box.openfoam/constant/polyMesh/faces c2/box.openfoam/12/polyMesh
 refused "the faces of the mesh change with time" c2/box.openfoam --cells 10 \
   --field Ma --out z.vtu
 refused "neither an OpenFOAM case" c2 --cells 10 --field Ma --out z.vtu
+refused "--cells 1e+30 is more than 1e+12" s.vtu --cells 1e30 --field U:2 \
+  --out z.vtu
 refused "it is linear" c1/box.openfoam/0 --cells 10 --field Ma --out z.vtu
 refused "there is no field 'q'; its files are: Ma" c1/box.openfoam --cells 10 \
   --field q --out z.vtu
