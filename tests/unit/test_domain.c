@@ -329,10 +329,13 @@ static vg_status close_holes(struct vg_mesh *m, int symmetry, size_t *n_hole)
 {
   struct vg_sizing *s = field(m, 1.4);
   struct vg_error err = VG_ERROR_INIT;
-  size_t n_before = m->n_tri, n_tri;
-  vg_status st = vg_domain_close_holes(m, symmetry, s, n_hole, &n_tri, &err);
+  struct vg_cap_report r;
+  size_t n_before = m->n_tri;
+  vg_status st = vg_domain_close_holes(m, symmetry, s, &r, &err);
 
-  assert_int_equal(m->n_tri, n_before + (st < 0 ? 0 : n_tri));
+  *n_hole = r.n;
+  assert_true(r.n_curved <= r.n);
+  assert_int_equal(m->n_tri, n_before + (st < 0 ? 0 : r.n_tri));
   if (st < 0) assert_non_null(strstr(err.text, "the hole at"));
   vg_sizing_free(s);
   return st;

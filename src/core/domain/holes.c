@@ -35,6 +35,7 @@ struct holes {
     int stays;
   } * rim;
   double lo[3], hi[3], length, tolerance;
+  size_t n_curved; /* Caps whose rims lie in no plane. */
 };
 
 static vg_status follow_rims(struct holes *h, struct vg_error *err)
@@ -164,6 +165,32 @@ static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
   return VG_OK;
 }
 
+/* Is every point of the loop within `flatness` times its extent of a plane? */
+static int is_flat(const struct holes *h, size_t n, const uint32_t *loop,
+                   double flatness)
+{
+  double sum[3] = { 0, 0, 0 }, most = 0, extent = 0;
+  const double *o = h->m.point[loop[0]];
+
+  for (size_t i = 1; i + 1 < n; i++) {
+    double u[3], v[3], c[3];
+
+    vg_sub(h->m.point[loop[i]], o, u);
+    vg_sub(h->m.point[loop[i + 1]], o, v);
+    vg_cross(u, v, c);
+    for (int d = 0; d < 3; d++) sum[d] += c[d];
+    extent = fmax(extent, vg_norm(u));
+  }
+  if (!(vg_unit(sum) > 0)) return 0;
+  for (size_t i = 1; i < n; i++) {
+    double u[3];
+
+    vg_sub(h->m.point[loop[i]], o, u);
+    most = fmax(most, fabs(vg_dot(u, sum)));
+  }
+  return most <= flatness * extent;
+}
+
 /* Close the loop of n points by a patch of its own: plane if the loop is nearly
  * so, otherwise with the least area between its points. */
 static vg_status close_loop(struct holes *h, size_t n, const uint32_t *loop,
@@ -182,6 +209,7 @@ static vg_status close_loop(struct holes *h, size_t n, const uint32_t *loop,
   st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t(*)[2])rim.edge, law,
                             HOLE_FLATNESS, patch, &inner);
   if (st == VG_ERR_GEOMETRY) st = vg_span_rim(&h->m, n, loop, patch, &inner);
+  h->n_curved += !is_flat(h, n, loop, ONE_PLANE);
   if (st < 0)
     st = vg_fail(err, st,
                  "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
@@ -455,32 +483,6 @@ done:
   return st;
 }
 
-/* Is every point of the loop within `flatness` times its extent of a plane? */
-static int is_flat(const struct holes *h, size_t n, const uint32_t *loop,
-                   double flatness)
-{
-  double sum[3] = { 0, 0, 0 }, most = 0, extent = 0;
-  const double *o = h->m.point[loop[0]];
-
-  for (size_t i = 1; i + 1 < n; i++) {
-    double u[3], v[3], c[3];
-
-    vg_sub(h->m.point[loop[i]], o, u);
-    vg_sub(h->m.point[loop[i + 1]], o, v);
-    vg_cross(u, v, c);
-    for (int d = 0; d < 3; d++) sum[d] += c[d];
-    extent = fmax(extent, vg_norm(u));
-  }
-  if (!(vg_unit(sum) > 0)) return 0;
-  for (size_t i = 1; i < n; i++) {
-    double u[3];
-
-    vg_sub(h->m.point[loop[i]], o, u);
-    most = fmax(most, fabs(vg_dot(u, sum)));
-  }
-  return most <= flatness * extent;
-}
-
 /* Is the run a considerable part of the rim? */
 static int is_part(const struct holes *h, size_t n, const uint32_t *loop,
                    size_t first, size_t n_run)
@@ -551,24 +553,26 @@ static void release(struct holes *h)
 }
 
 vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
-                                const struct vg_sizing *sizing, size_t *n_hole,
-                                size_t *n_tri, struct vg_error *err)
+                                const struct vg_sizing *sizing,
+                                struct vg_cap_report *report,
+                                struct vg_error *err)
 {
-  assert(sizing && n_hole && n_tri);
+  assert(sizing && report);
 
   struct holes h = { .n_loop = 0 };
   const struct vg_size_function law = vg_size_function_of(sizing);
   vg_status st;
 
-  *n_hole = *n_tri = 0;
+  *report = (struct vg_cap_report){ 0 };
   VG_TRY(vg_mesh_copy(&h.m, surface, err));
   VG_TRY(prepare(&h, err));
   VG_TRY(keep_symmetry(&h, symmetry, err));
   for (uint32_t k = 0; k < h.n_loop; k++) {
     if (h.rim[k].stays) continue;
-    VG_TRY(close_rim(&h, k, &law, n_hole, err));
+    VG_TRY(close_rim(&h, k, &law, &report->n, err));
   }
-  *n_tri = h.m.n_tri - surface->n_tri;
+  report->n_tri = h.m.n_tri - surface->n_tri;
+  report->n_curved = h.n_curved;
   vg_mesh_move(surface, &h.m);
 done:
   release(&h);

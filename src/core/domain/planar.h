@@ -162,6 +162,13 @@ struct vg_rim {
 vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
                          struct vg_rim **rim, struct vg_error *err);
 
+/** Caps that were added. */
+struct vg_cap_report {
+  size_t n, n_tri; /* caps and their triangles */
+  size_t n_curved; /* caps on rims that lie in no plane to within 1e-3 of
+                      their extent */
+};
+
 /** Close the holes of a surface that have nearly plane rims (within 5 % of
  * their extent). The caps are triangulated with the sizes of the field. Each
  * gets a patch of its own, cap_1, cap_2, ..., with an id above all others and
@@ -170,11 +177,12 @@ vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
  * too. VG_ERR_GEOMETRY, naming the hole, if rims meet or are not plane; the
  * surface is then unchanged. Caps may intersect the surface: check the result.
  *
- * @param symmetry       as in vg_domain_half
- * @param n_hole, n_tri  out: holes closed, triangles added */
+ * @param symmetry  as in vg_domain_half
+ * @param report    out */
 vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
-                                const struct vg_sizing *sizing, size_t *n_hole,
-                                size_t *n_tri, struct vg_error *err);
+                                const struct vg_sizing *sizing,
+                                struct vg_cap_report *report,
+                                struct vg_error *err);
 
 /** Box around the surface and, if the farfield is swept along the Mach cone,
  * around that, with a margin of a tenth. The sizes on such a farfield are those

@@ -217,12 +217,12 @@ static vg_status try_caps(const struct vg_boundary *b, struct vg_display *show,
 {
   const int is_given = b->read->settings.flow != VG_FLOW_UNKNOWN;
   struct vg_mesh m = VG_MESH_INIT;
-  size_t n_hole, n_tri;
+  struct vg_cap_report r;
   vg_status st;
 
   vg_display_update(show, "trying to close the rims", 0, 0);
   VG_TRY(vg_mesh_copy(&m, &b->surface, err));
-  st = vg_boundary_add_caps(b, &m, &n_hole, &n_tri, err);
+  st = vg_boundary_add_caps(b, &m, &r, err);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY) st = VG_OK;
     goto done;

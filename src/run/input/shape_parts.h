@@ -317,12 +317,11 @@ vg_status vg_boundary_refuse_plane(const struct vg_boundary *b,
 
 /** Close the rims of m, which is the surface of b or a copy of it.
  *
- * @param n_hole  out: number of caps
- * @param n_tri   out: number of their triangles
+ * @param report  out
  * Errors are those of vg_sizing_new and vg_domain_close_holes; m is then
  * unchanged. */
 vg_status vg_boundary_add_caps(const struct vg_boundary *b, struct vg_mesh *m,
-                               size_t *n_hole, size_t *n_tri,
+                               struct vg_cap_report *report,
                                struct vg_error *err);
 
 /** Returns VG_ERR_GEOMETRY with a message that lists the rims of an open

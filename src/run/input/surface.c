@@ -234,7 +234,7 @@ struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b)
 }
 
 vg_status vg_boundary_add_caps(const struct vg_boundary *b, struct vg_mesh *m,
-                               size_t *n_hole, size_t *n_tri,
+                               struct vg_cap_report *report,
                                struct vg_error *err)
 {
   struct vg_sizing_options options = vg_boundary_sizing(b);
@@ -246,7 +246,7 @@ vg_status vg_boundary_add_caps(const struct vg_boundary *b, struct vg_mesh *m,
                        b->read->settings.source, m, &sizing, err));
   VG_TRY(vg_domain_close_holes(m,
                                vg_options_farfield(&b->read->settings).symmetry,
-                               sizing, n_hole, n_tri, err));
+                               sizing, report, err));
 done:
   vg_sizing_free(sizing);
   return st;
@@ -254,17 +254,23 @@ done:
 
 static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
 {
-  size_t n_hole, n_tri;
+  struct vg_cap_report r;
   vg_status st;
 
   VG_TRY(vg_boundary_refuse_plane(b, err));
-  VG_TRY(vg_boundary_add_caps(b, &b->surface, &n_hole, &n_tri, err));
-  if (n_hole)
+  VG_TRY(vg_boundary_add_caps(b, &b->surface, &r, err));
+  if (r.n)
     vg_note(b->notes,
             "holes of the surface closed (close_holes): %zu, with %zu "
             "triangles in patches %d to %d, named cap_1 to cap_%zu",
-            n_hole, n_tri, (int)b->surface.patch[b->n_given_patch].id,
-            (int)b->surface.patch[b->surface.n_patch - 1].id, n_hole);
+            r.n, r.n_tri, (int)b->surface.patch[b->n_given_patch].id,
+            (int)b->surface.patch[b->surface.n_patch - 1].id, r.n);
+  if (r.n_curved)
+    vg_note(b->notes,
+            "%zu of these caps have rims that lie in no plane, such as the "
+            "common rim of two missing sides: look whether the body is meant "
+            "to end there",
+            r.n_curved);
 done:
   return st;
 }
