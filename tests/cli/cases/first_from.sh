@@ -140,7 +140,7 @@ refused s.vtu "first and first_from are both given" --first 1e-5
 refused s.vtu "first_from requires y_plus" --y-plus 0
 refused s.vtu "first_from is given, but layers is no" --layers no
 refused s.vtu "layer_sources and first_from" --layer-sources yes
-refused s.vtu "there is no point array 'tau'; its point arrays are: cf" \
+refused s.vtu "there is no array 'tau'; its point arrays are: cf" \
   --first-field tau
 refused s.vtu "set ratio, and layer_count or layer_total" --layer-count 30 \
   --layer-total 0.01
