@@ -124,16 +124,18 @@ static void lend_gradients(int kind, size_t n, const uint32_t *node,
   const int width = vg_cell_faces[kind].width;
 
   for (size_t c = 0; c < n; c++, node += width)
-    for (int i = 0; i < width; i++)
-      for (int k = 0; k < width; k++) {
-        struct sums *to = at + node[i];
+    for (int i = 0; i < width; i++) {
+      struct sums *to = at + node[i];
+
+      for (int k = 0; k < width && to->rank < 3; k++) {
         const struct sums *from = at + node[k];
 
-        if (to->rank == 3 || from->rank != 3) continue;
+        if (from->rank < 3) continue;
         if (to->n_around == 0) memset(to->gradient, 0, sizeof to->gradient);
         to->n_around++;
         for (int j = 0; j < 3; j++) to->gradient[j] += from->gradient[j];
       }
+    }
 }
 
 /* The function at the point: its value at the mean centre, less the gradient

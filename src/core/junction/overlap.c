@@ -38,13 +38,14 @@ static int cut(double (*p)[3], int n, const double a[3], const double out[3])
   }
   for (int i = 0; i < n; i++) {
     const int j = (i + 1) % n;
-    const double share = height[i] / (height[i] - height[j]);
 
     if (height[i] <= 0) {
       for (int k = 0; k < 3; k++) p[m][k] = old[i][k];
       m++;
     }
     if ((height[i] < 0 && height[j] > 0) || (height[i] > 0 && height[j] < 0)) {
+      const double share = height[i] / (height[i] - height[j]);
+
       for (int k = 0; k < 3; k++)
         p[m][k] = old[i][k] + share * (old[j][k] - old[i][k]);
       m++;

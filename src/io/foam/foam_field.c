@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/memory.h"
 #include "io/foam/foam_read.h"
@@ -161,23 +160,19 @@ vg_status vg_foam_field_read(const struct vg_foam_case *c, const char *name,
                              struct vg_error *err)
 {
   struct vg_foam_text f = VG_FOAM_TEXT_INIT;
-  char *path = NULL, *packed = NULL;
+  char *path;
+  int has = 0;
   vg_status st = VG_OK;
 
   *value = NULL;
   if (!*c->time)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s has no folder of a time (0, 0.5, 100, ...)", c->folder);
-  if (asprintf(&path, "%s/%s", c->time, name) < 0 ||
-      asprintf(&packed, "%s.gz", path) < 0) {
-    st = vg_fail_memory(err, "a file name");
-    goto done;
-  }
-  if (!*name || (access(path, F_OK) && access(packed, F_OK))) {
-    st = no_field(c->time, name, err);
-    goto done;
-  }
-  VG_TRY(vg_foam_text_open(path, &f, err));
+  path = vg_foam_find_file(c->time, name, &has);
+  if (!path) return vg_fail_memory(err, "a file name");
+  free(path);
+  if (!*name || !has) return no_field(c->time, name, err);
+  VG_TRY(vg_foam_text_open(c->time, name, &f, err));
   VG_TRY(parse_field(&f, c->n_cell, components, value, err));
   st = sort_values(c, (size_t)*components, value, err);
 done:
@@ -186,7 +181,5 @@ done:
     *value = NULL;
   }
   vg_foam_text_release(&f);
-  free(path);
-  free(packed);
   return st;
 }

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/memory.h"
 #include "io/foam/foam_mesh.h"
@@ -20,33 +19,15 @@ static char *below(const char *folder, const char *file)
   return asprintf(&path, "%s/%s", folder, file) < 0 ? NULL : path;
 }
 
-static int has_file(const char *folder, const char *file)
+static int has_file(const char *folder, const char *name)
 {
-  char *path = below(folder, file), *packed = NULL;
-  int has = path && !access(path, F_OK);
+  int has = 0;
 
-  if (path && !has && asprintf(&packed, "%s.gz", path) >= 0) {
-    has = !access(packed, F_OK);
-    free(packed);
-  }
-  free(path);
+  free(vg_foam_find_file(folder, name, &has));
   return has;
 }
 
 /* --- lists of polyMesh ---------------------------------------------------- */
-
-/* Opens a list of the mesh. */
-static vg_status open_list(const char *folder, const char *file,
-                           struct vg_foam_text *f, struct vg_error *err)
-{
-  char *path = below(folder, file);
-  vg_status st;
-
-  if (!path) return vg_fail_memory(err, "a file name");
-  st = vg_foam_text_open(path, f, err);
-  free(path);
-  return st;
-}
 
 /* Labels as numbers below `end`, in place of 64-bit labels. */
 static vg_status narrow(const struct vg_foam_text *f, const char *what,
@@ -69,7 +50,7 @@ static vg_status read_points(const char *folder, struct vg_foam_lists *l,
   struct vg_foam_text f = VG_FOAM_TEXT_INIT;
   vg_status st;
 
-  VG_TRY(open_list(folder, "points", &f, err));
+  VG_TRY(vg_foam_text_open(folder, "points", &f, err));
   st = vg_foam_reals(&f, "points", 3, INT32_MAX, &l->n_point, &l->point, err);
 done:
   vg_foam_text_release(&f);
@@ -151,7 +132,7 @@ static vg_status read_faces(const char *folder, struct vg_foam_lists *l,
   int64_t *corner = NULL;
   vg_status st;
 
-  VG_TRY(open_list(folder, "faces", &f, err));
+  VG_TRY(vg_foam_text_open(folder, "faces", &f, err));
   if (!strcmp(f.class_name, "faceCompactList")) {
     VG_TRY(compact_list(&f, l, &corner, err));
   } else if (f.is_binary) {
@@ -181,7 +162,7 @@ static vg_status read_sides(const char *folder, struct vg_foam_lists *l,
   size_t n = 0;
   vg_status st;
 
-  VG_TRY(open_list(folder, "owner", &f, err));
+  VG_TRY(vg_foam_text_open(folder, "owner", &f, err));
   VG_TRY(vg_foam_labels(&f, "owners", l->n_face, &n, &label, err));
   if (n != l->n_face) {
     st = vg_fail(err, VG_ERR_FORMAT, "%s has %zu owners of %zu faces",
@@ -203,7 +184,7 @@ static vg_status read_sides(const char *folder, struct vg_foam_lists *l,
   free(label);
   label = NULL;
   vg_foam_text_release(&f);
-  VG_TRY(open_list(folder, "neighbour", &f, err));
+  VG_TRY(vg_foam_text_open(folder, "neighbour", &f, err));
   VG_TRY(vg_foam_labels(&f, "neighbours", l->n_face, &n, &label, err));
   while (n && label[n - 1] == -1) n--;
   l->n_inner = n;
@@ -259,7 +240,7 @@ static vg_status read_boundary(const char *folder, struct vg_foam_lists *l,
   int64_t n;
   vg_status st;
 
-  VG_TRY(open_list(folder, "boundary", &f, err));
+  VG_TRY(vg_foam_text_open(folder, "boundary", &f, err));
   if (!vg_foam_token(&f, &text, &len) || !vg_parse_int(text, len, &n) ||
       n < 0) {
     st = vg_input_fail(&f.in, err, "no number of patches");

@@ -19,7 +19,8 @@ struct vg_input;
 /** A case, its mesh, and where its cells are in that mesh. */
 struct vg_foam_case {
   char *folder; /* of the case */
-  char *time;   /* path of the folder of the fields; "": there is none */
+  char *time;   /* path of the folder of the fields; "" for a case without
+                     times */
   struct vg_mesh m;
   size_t n_cell;
   uint32_t *cell; /* [n_cell] number of the cell of m (tetrahedra,

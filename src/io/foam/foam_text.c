@@ -30,7 +30,7 @@ static void step(struct vg_input *in)
   in->at++;
 }
 
-/* Pass a comment. Returns 0 if there is none. */
+/* Pass a comment. Returns 0 if the cursor is not at one. */
 static int skip_comment(struct vg_input *in)
 {
   if (at(in, 0) != '/' || (at(in, 1) != '/' && at(in, 1) != '*')) return 0;
@@ -160,17 +160,38 @@ done:
   return st;
 }
 
-vg_status vg_foam_text_open(const char *path, struct vg_foam_text *f,
-                            struct vg_error *err)
+char *vg_foam_find_file(const char *folder, const char *name, int *has)
 {
-  char *packed = NULL;
+  char *path, *packed;
+  int exists;
+
+  if (asprintf(&path, "%s/%s", folder, name) < 0) return NULL;
+  if (asprintf(&packed, "%s.gz", path) < 0) {
+    free(path);
+    return NULL;
+  }
+  exists = !access(path, F_OK);
+  if (!exists && !access(packed, F_OK)) {
+    char *plain = path;
+
+    path = packed;
+    packed = plain;
+    exists = 1;
+  }
+  free(packed);
+  if (has) *has = exists;
+  return path;
+}
+
+vg_status vg_foam_text_open(const char *folder, const char *name,
+                            struct vg_foam_text *f, struct vg_error *err)
+{
+  char *path = vg_foam_find_file(folder, name, NULL);
   vg_status st;
 
-  if (access(path, F_OK) && asprintf(&packed, "%s.gz", path) < 0)
-    return vg_fail_memory(err, "a file name");
-  st = vg_input_open(packed && !access(packed, F_OK) ? packed : path, &f->in,
-                     err);
-  free(packed);
+  if (!path) return vg_fail_memory(err, "a file name");
+  st = vg_input_open(path, &f->in, err);
+  free(path);
   return st < 0 ? st : vg_foam_text_head(f, err);
 }
 

@@ -20,10 +20,15 @@ struct vg_foam_text {
     .in = VG_INPUT_INIT                                                        \
   }
 
-/** Open PATH, or PATH.gz, and read its header. Release it in any case.
- * VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_MEMORY. */
-vg_status vg_foam_text_open(const char *path, struct vg_foam_text *f,
-                            struct vg_error *err);
+/** Path of FOLDER/NAME, or of FOLDER/NAME.gz if only that exists; to be freed.
+ * has: out: 1 if one of them exists; may be NULL. NULL if there is not enough
+ * memory. */
+char *vg_foam_find_file(const char *folder, const char *name, int *has);
+
+/** Open the file of vg_foam_find_file and read its header. Release it in any
+ * case. VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_MEMORY. */
+vg_status vg_foam_text_open(const char *folder, const char *name,
+                            struct vg_foam_text *f, struct vg_error *err);
 
 /** Read the header of the file in f->in. */
 vg_status vg_foam_text_head(struct vg_foam_text *f, struct vg_error *err);
