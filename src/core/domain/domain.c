@@ -365,11 +365,9 @@ static vg_status add_mach(struct domain *d, uint32_t patch,
 static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
                            int32_t bc_fun3d, uint32_t *at, struct vg_error *err)
 {
-  int32_t id = 0;
+  const int32_t id = vg_mesh_last_id(m);
   size_t i;
 
-  for (i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id > id) id = m->patch[i].id;
   if (id == INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "patch number %" PRId32 " is the largest possible and "

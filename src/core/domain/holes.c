@@ -149,11 +149,9 @@ static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
                          struct vg_error *err)
 {
   char name[VG_NAME_MAX];
-  int32_t id = 0;
+  const int32_t id = vg_mesh_last_id(&h->m);
   size_t at;
 
-  for (size_t i = 0; i < h->m.n_patch; i++)
-    if (h->m.patch[i].id > id) id = h->m.patch[i].id;
   if (id == INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "no patch number is left for a "

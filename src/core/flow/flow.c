@@ -126,12 +126,11 @@ static int has_rims(const struct vg_surface_report *r)
  * the surface check. */
 static vg_status flatten_root(struct settle *s, struct vg_error *err)
 {
-  double lo[3], hi[3], length = 0, off;
+  const double length = vg_mesh_length(s->m);
+  double off;
   uint8_t *none = NULL;
   vg_status st;
 
-  vg_mesh_bounds(s->m, lo, hi);
-  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
   VG_TRY(vg_domain_flatten(s->m, s->out.axis, s->out.at, &off, err));
   if (off <= VG_HALF_NEAR * length) goto done;
   s->out.root_off = off;

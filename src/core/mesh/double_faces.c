@@ -78,12 +78,7 @@ static vg_status check_sheets(struct doubling *d, struct vg_error *err)
                      (int)s->id, space(s), s->name, x[0], x[1], x[2]);
   }
   for (size_t i = 0; i < m->n_sheet; i++) d->n_new_patch += d->is_doubled[i];
-  for (size_t i = 0; i < m->n_patch + m->n_sheet; i++) {
-    const struct vg_patch *p = i < m->n_patch ? &m->patch[i]
-                                              : &m->sheet[i - m->n_patch];
-
-    if (p->id > d->last_id) d->last_id = p->id;
-  }
+  d->last_id = vg_mesh_last_id(m);
   if (d->n_new_patch > (size_t)(INT32_MAX - d->last_id))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "no numbers are left for the backs of interfaces; renumber "

@@ -2,6 +2,7 @@
 #include "core/mesh/mesh.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -110,4 +111,24 @@ void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3])
       if (m->point[i][k] < lo[k]) lo[k] = m->point[i][k];
       if (m->point[i][k] > hi[k]) hi[k] = m->point[i][k];
     }
+}
+
+double vg_mesh_length(const struct vg_mesh *m)
+{
+  double lo[3], hi[3], length = 0;
+
+  vg_mesh_bounds(m, lo, hi);
+  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
+  return length;
+}
+
+int32_t vg_mesh_last_id(const struct vg_mesh *m)
+{
+  int32_t last = 0;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].id > last) last = m->patch[i].id;
+  for (size_t i = 0; i < m->n_sheet; i++)
+    if (m->sheet[i].id > last) last = m->sheet[i].id;
+  return last;
 }

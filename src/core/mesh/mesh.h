@@ -124,4 +124,10 @@ size_t vg_mesh_add_patch(struct vg_mesh *m, int32_t id, const char *name);
  * empty mesh. */
 void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3]);
 
+/** Longest side of the bounding box of all points; 0 for an empty mesh. */
+double vg_mesh_length(const struct vg_mesh *m);
+
+/** Highest number of a patch or sheet, at least 0. */
+int32_t vg_mesh_last_id(const struct vg_mesh *m);
+
 #endif

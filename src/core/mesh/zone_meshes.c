@@ -100,16 +100,12 @@ done:
 static vg_status make_patches(struct vg_zone_parts *p, struct vg_error *err)
 {
   const struct vg_mesh *m = p->m;
-  int32_t last = 0;
+  const int32_t last = vg_mesh_last_id(m);
 
   p->n_patch = m->n_patch + 2 * p->n_pair;
   p->patch = vg_calloc(p->n_patch, sizeof *p->patch);
   if (!p->patch) return vg_fail_memory(err, "the patches");
   if (m->n_patch) memcpy(p->patch, m->patch, m->n_patch * sizeof *m->patch);
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id > last) last = m->patch[i].id;
-  for (size_t i = 0; i < m->n_sheet; i++)
-    if (m->sheet[i].id > last) last = m->sheet[i].id;
   for (size_t k = 0; k < 2 * p->n_pair; k++) {
     const struct vg_patch *sheet = &m->sheet[p->pair[k / 2].sheet];
     struct vg_patch *to = &p->patch[m->n_patch + k];

@@ -98,20 +98,11 @@ static vg_status count_patches(struct faces *f, struct vg_error *err)
 
   for (size_t i = 0; i < f->n; i++)
     f->n_patch += !i || f->face[i].group != f->face[i - 1].group;
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id > f->last) f->last = m->patch[i].id;
-  for (size_t i = 0; i < m->n_sheet; i++)
-    if (m->sheet[i].id > f->last) f->last = m->sheet[i].id;
+  f->last = vg_mesh_last_id(m);
   if (f->n_patch <= (size_t)(INT32_MAX - f->last)) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "no numbers are left for the interfaces of zones; renumber "
                  "the patches");
-}
-
-static void name_zone(const struct vg_zone *z, char text[VG_NAME_MAX])
-{
-  if (*z->name) snprintf(text, VG_NAME_MAX, "%s", z->name);
-  else snprintf(text, VG_NAME_MAX, "zone_%d", (int)z->id);
 }
 
 static struct vg_patch make_patch(struct faces *f, uint64_t group)
@@ -129,8 +120,8 @@ static struct vg_patch make_patch(struct faces *f, uint64_t group)
     char a[VG_NAME_MAX], b[VG_NAME_MAX];
 
     group -= m->n_sheet;
-    name_zone(&m->zone[group / m->n_zone], a);
-    name_zone(&m->zone[group % m->n_zone], b);
+    vg_zone_name(&m->zone[group / m->n_zone], a);
+    vg_zone_name(&m->zone[group % m->n_zone], b);
     snprintf(p.name, sizeof p.name, "%.37s_to_%.37s", a, b);
   }
   return p;

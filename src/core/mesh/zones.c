@@ -265,3 +265,9 @@ size_t vg_mesh_interface_triangles(const struct vg_mesh *m)
     n += m->sheet[m->sheet_of[t]].is_interface != 0;
   return n;
 }
+
+void vg_zone_name(const struct vg_zone *z, char name[VG_NAME_MAX])
+{
+  if (*z->name) memcpy(name, z->name, VG_NAME_MAX);
+  else snprintf(name, VG_NAME_MAX, "zone_%d", (int)z->id);
+}

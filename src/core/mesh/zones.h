@@ -80,4 +80,7 @@ void vg_mesh_drop_zones(struct vg_mesh *m);
 vg_status vg_mesh_zones_from_tags(struct vg_mesh *m, const int32_t *tag,
                                   int one, struct vg_error *err);
 
+/** The name of a zone, or zone_NUMBER if it has none. */
+void vg_zone_name(const struct vg_zone *z, char name[VG_NAME_MAX]);
+
 #endif

@@ -264,15 +264,14 @@ static vg_status gather(const struct block *block, size_t n_block,
 static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
                         struct search *s, struct vg_error *err)
 {
-  double lo[3], hi[3], length = 0, area = 0;
+  double length, area = 0;
 
   if (!(o->edges > 0 && o->edges <= 1e4 && o->h_min >= 0 && o->h_max >= 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "gaps: one of %g edges across gaps and sizes %g to %g is "
                    "out of range",
                    o->edges, o->h_min, o->h_max);
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
+  length = vg_mesh_length(m);
   s->edges = o->edges;
   s->h_min = o->h_min > 0 ? o->h_min : H_MIN * length;
   s->h_max = fmax(o->h_max > 0 ? o->h_max : H_MAX * length, s->h_min);

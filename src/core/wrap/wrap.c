@@ -152,10 +152,8 @@ static vg_status refuse_empty(const struct vg_mesh *in, double size,
                               const struct vg_wrap_forecast *f,
                               struct vg_error *err)
 {
-  double lo[3], hi[3], extent = 0;
+  const double extent = vg_mesh_length(in);
 
-  vg_mesh_bounds(in, lo, hi);
-  for (int k = 0; k < 3; k++) extent = fmax(extent, hi[k] - lo[k]);
   if (!f->n_open || size > extent)
     return vg_fail(err, VG_ERR_GEOMETRY,
                    "nothing is left of a wrap of size %g, since the body is "

@@ -100,12 +100,11 @@ vg_status vg_wrap_suggest(const struct vg_mesh *m, const struct vg_stop *stop,
 {
   struct vg_wrap_options o = { .size = 1 };
   struct vg_wrap_forecast f;
-  double lo[3], hi[3], longest = 0, first, s;
+  double longest, first, s;
   vg_status st;
 
   VG_TRY(vg_wrap_foresee(m, &o, &f, err));
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3; k++) longest = fmax(longest, hi[k] - lo[k]);
+  longest = vg_mesh_length(m);
   first = s = rounded(sqrt(f.area * VG_WRAP_CLOSED / TRIANGLES));
   for (; s < COARSEST * longest; s = rounded(COARSER * s)) {
     st = try_size(m, s, stop, err);

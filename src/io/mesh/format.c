@@ -491,8 +491,7 @@ static vg_status take_zones(const char *path, struct vg_mesh *m,
     if (!vg_mesh_zone_cells(m, z)) continue;
     vg_mesh_zone_seed(m, z, of[out->n].seed);
     of[out->n].kind = m->zone[z].kind;
-    if (*m->zone[z].name) memcpy(of[out->n].name, m->zone[z].name, VG_NAME_MAX);
-    else snprintf(of[out->n].name, VG_NAME_MAX, "zone_%d", (int)m->zone[z].id);
+    vg_zone_name(&m->zone[z], of[out->n].name);
     out->n++;
   }
   out->of = of;

@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "core/mesh/zones.h"
 
 #define TAIL 12 /* length of "_-2147483648" */
 
@@ -110,8 +111,7 @@ char (*vg_zone_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
     struct vg_patch *p = &zones.patch[z];
 
     p->id = m->zone[z].id;
-    memcpy(p->name, m->zone[z].name, sizeof p->name);
-    if (!*p->name) snprintf(p->name, sizeof p->name, "zone_%d", (int)p->id);
+    vg_zone_name(&m->zone[z], p->name);
   }
   word = vg_patch_words(&zones, most);
   free(zones.patch);

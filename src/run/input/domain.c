@@ -279,11 +279,9 @@ static int is_end(const struct vg_mesh *m, const struct vg_rim *r)
 static int are_holes(const struct vg_mesh *m, const struct vg_rim *rim,
                      size_t n)
 {
-  double lo[3], hi[3], length = 0;
+  const double length = vg_mesh_length(m);
   int n_end = 0;
 
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
   for (size_t i = 0; i < n; i++)
     if (rim[i].width > HOLE * length) return 0;
   if (n > MANY_RIMS) return 0;

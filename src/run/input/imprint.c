@@ -547,15 +547,6 @@ done:
   return st;
 }
 
-static double length_of(const struct vg_mesh *m)
-{
-  double lo[3], hi[3], most = 0;
-
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3; k++) most = fmax(most, hi[k] - lo[k]);
-  return most;
-}
-
 vg_status vg_boundary_cut_outer(struct vg_boundary *b,
                                 const struct vg_sizing *sizing, double spacing,
                                 int *is_cut, struct vg_display *show,
@@ -581,7 +572,8 @@ vg_status vg_boundary_cut_outer(struct vg_boundary *b,
     VG_TRY(refuse_beyond(b, "crosses the generated boundary", first.at,
                          all.tri_patch[t], lo, hi, err));
   }
-  VG_TRY(cut(&o.view, &all, 1, &none, SNAP * length_of(&o.body), show, err));
+  VG_TRY(
+    cut(&o.view, &all, 1, &none, SNAP * vg_mesh_length(&o.body), show, err));
   VG_TRY(join_outer(b, &o.body, &o.view.surface, err));
   vg_mesh_move(&b->inner, &o.view.inner);
   st = remesh_outer(b, sizing, spacing, show, err);

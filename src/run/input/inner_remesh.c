@@ -16,11 +16,7 @@
 
 double vg_boundary_length(const struct vg_boundary *b)
 {
-  double lo[3], hi[3], most = 0;
-
-  vg_mesh_bounds(&b->surface, lo, hi);
-  for (int k = 0; k < 3; k++) most = fmax(most, hi[k] - lo[k]);
-  return most;
+  return vg_mesh_length(&b->surface);
 }
 
 vg_status vg_inner_orient_all(const struct vg_boundary *b, struct vg_mesh *all,

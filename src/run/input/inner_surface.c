@@ -79,11 +79,9 @@ static vg_status add_back(struct vg_boundary *b, size_t i, int role,
   struct vg_mesh *m = &b->surface;
   struct vg_patch *back;
   char name[VG_NAME_MAX] = "";
-  int32_t id = 0;
+  const int32_t id = vg_mesh_last_id(m);
   size_t at;
 
-  for (size_t k = 0; k < m->n_patch; k++)
-    if (m->patch[k].id > id) id = m->patch[k].id;
   if (id == INT32_MAX)
     return vg_fail(err, VG_ERR_INPUT,
                    "no number is left for the back of patch %d; renumber the "

@@ -88,19 +88,10 @@ vg_status vg_units_begin(struct vg_read *r, struct vg_error *err)
                  name_of(r));
 }
 
-static double length_of(const struct vg_mesh *m)
-{
-  double lo[3], hi[3], most = 0;
-
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3 && m->n_point; k++) most = fmax(most, hi[k] - lo[k]);
-  return most;
-}
-
 static void convert_points(struct vg_read *r)
 {
   struct vg_mesh *m = &r->surface;
-  const double before = length_of(m);
+  const double before = vg_mesh_length(m);
 
   for (size_t i = 0; i < m->n_point; i++)
     for (int k = 0; k < 3; k++)
@@ -109,7 +100,7 @@ static void convert_points(struct vg_read *r)
           "the coordinates of %s were converted from %s (file_unit) to %s "
           "(unit): its length %.6g becomes %.6g",
           name_of(r), vg_unit_name(r->settings.cad.file_unit),
-          vg_unit_name(r->settings.cad.unit), before, length_of(m));
+          vg_unit_name(r->settings.cad.unit), before, vg_mesh_length(m));
 }
 
 /* `scale` is sometimes taken for a factor on the coordinates. */
@@ -120,7 +111,7 @@ static void note_scale(struct vg_read *r)
           "scale %g multiplies target edge lengths, not coordinates: the "
           "surface keeps its length of %.6g; file_unit and unit convert "
           "coordinates",
-          r->settings.scale, length_of(&r->surface));
+          r->settings.scale, vg_mesh_length(&r->surface));
 }
 
 vg_status vg_units_end(struct vg_read *r, struct vg_comm *comm,

@@ -245,11 +245,9 @@ static vg_status compare_points(const char *path, struct vg_input *in,
                                 struct vg_error *err)
 {
   static const char *const axis[3] = { "x", "y", "z" };
-  double lo[3], hi[3], size = 0;
+  const double size = vg_mesh_length(&s->m);
   vg_status st = VG_OK;
 
-  vg_mesh_bounds(&s->m, lo, hi);
-  for (int k = 0; k < 3; k++) size = fmax(size, hi[k] - lo[k]);
   for (int k = 0; k < 3 && st >= 0; k++) {
     struct vg_error none = VG_ERROR_INIT;
     double *x = NULL;

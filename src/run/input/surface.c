@@ -298,7 +298,6 @@ done:
 static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err)
 {
-  double lo[3], hi[3], length = 0;
   size_t n_edge, n_point = 0;
   vg_status st = VG_OK;
 
@@ -306,11 +305,10 @@ static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
   if (!b->check.count[VG_DEFECT_OPEN_EDGE] || !b->read->settings.repair)
     return VG_OK;
   VG_TRY(vg_surface_rim_gap(&b->surface, &b->check, &b->rim_gap, &n_edge, err));
-  vg_mesh_bounds(&b->surface, lo, hi);
-  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
   if (!(b->rim_gap > 0)) goto done;
-  VG_TRY(vg_surface_weld_rims(&b->surface, ROUNDING * length, &n_point, &n_edge,
-                              err));
+  VG_TRY(vg_surface_weld_rims(&b->surface,
+                              ROUNDING * vg_mesh_length(&b->surface), &n_point,
+                              &n_edge, err));
   if (!n_point) goto done;
   vg_note(b->notes,
           "%zu open edges coincide with others except for rounding: they were "
@@ -564,12 +562,12 @@ static vg_status check_range(const struct vg_boundary *b, struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface;
   const char *name = b->read->files.stem;
-  double lo[3], hi[3], side = 0;
+  const double side = vg_mesh_length(m);
+  double lo[3], hi[3];
 
-  vg_mesh_bounds(m, lo, hi);
-  for (int k = 0; k < 3; k++) side = fmax(side, hi[k] - lo[k]);
   if (side == 0 || side >= EXTENT_MIN)
     return vg_check_points(name, m->n_point, (const double(*)[3])m->point, err);
+  vg_mesh_bounds(m, lo, hi);
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: all points are within a box of side %g, from "
                  "(%g, %g, %g) to (%g, %g, %g); a surface must be at least %g "

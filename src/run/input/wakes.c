@@ -383,12 +383,10 @@ static vg_status add_patch(struct vg_mesh *m, size_t number,
                            struct vg_error *err)
 {
   char name[VG_NAME_MAX];
-  int32_t id = 0;
+  const int32_t id = vg_mesh_last_id(m);
   size_t at;
 
   snprintf(name, sizeof name, "wake%zu", number);
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id > id) id = m->patch[i].id;
   for (int k = 2; has_name(m, name); k++)
     snprintf(name, sizeof name, "wake%zu_%d", number, k);
   at = id < INT32_MAX ? vg_mesh_add_patch(m, id + 1, name) : SIZE_MAX;

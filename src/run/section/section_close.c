@@ -167,11 +167,9 @@ static vg_status check_reach(const struct vg_mesh *strip,
 static size_t add_patch(struct vg_mesh *m, const char *name, int32_t bc,
                         int32_t fun3d)
 {
-  int32_t id = 0;
+  const int32_t id = vg_mesh_last_id(m);
   size_t at;
 
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id > id) id = m->patch[i].id;
   at = vg_mesh_add_patch(m, id + 1, name);
   if (at == SIZE_MAX) return at;
   m->patch[at].bc = m->patch[at].family = bc;
