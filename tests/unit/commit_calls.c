@@ -303,13 +303,7 @@ int __wrap_rmdir(const char *a)
 
 /* --- calls that are not recorded ------------------------------------------ */
 
-#define FAILS(type, name, parameters, arguments, failure)                      \
-  type __real_##name parameters;                                               \
-  type __wrap_##name parameters;                                               \
-  type __wrap_##name parameters                                                \
-  {                                                                            \
-    return fails() ? failure : __real_##name arguments;                        \
-  }
+#include "failing_calls.h"
 
 FAILS(int, ftruncate, (int fd, off_t n), (fd, n), -1)
 FAILS(int, lstat, (const char *path, struct stat *s), (path, s), -1)

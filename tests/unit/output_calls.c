@@ -43,20 +43,11 @@ static int fails(void)
 
 /* --- memory and files ----------------------------------------------------- */
 
-#define FAILS(type, name, parameters, arguments, failure)                      \
-  type __real_##name parameters;                                               \
-  type __wrap_##name parameters;                                               \
-  type __wrap_##name parameters                                                \
-  {                                                                            \
-    return fails() ? failure : __real_##name arguments;                        \
-  }
+#include "failing_calls.h"
 
 FAILS(char *, strdup, (const char *text), (text), NULL)
 FAILS(char *, strndup, (const char *text, size_t n), (text, n), NULL)
-FAILS(int, vg_reserve, (void *block, size_t *cap, size_t need, size_t size),
-      (block, cap, need, size), -1)
-FAILS(void *, vg_alloc, (size_t n, size_t size), (n, size), NULL)
-FAILS(void *, vg_calloc, (size_t n, size_t size), (n, size), NULL)
+FAILS_MEMORY
 FAILS(char *, vg_slices_piece, (const char *stem, size_t k), (stem, k), NULL)
 FAILS(int, vg_digest_file, (int fd, struct vg_digest *d, uint64_t *bytes),
       (fd, d, bytes), -1)

@@ -391,27 +391,9 @@ static int fails(void)
   return ++n_alloc == fails_at;
 }
 
-void *__real_vg_alloc(size_t n, size_t size);
-void *__real_vg_calloc(size_t n, size_t size);
-int __real_vg_reserve(void *block, size_t *cap, size_t need, size_t size);
-void *__wrap_vg_alloc(size_t n, size_t size);
-void *__wrap_vg_calloc(size_t n, size_t size);
-int __wrap_vg_reserve(void *block, size_t *cap, size_t need, size_t size);
+#include "failing_calls.h"
 
-void *__wrap_vg_alloc(size_t n, size_t size)
-{
-  return fails() ? NULL : __real_vg_alloc(n, size);
-}
-
-void *__wrap_vg_calloc(size_t n, size_t size)
-{
-  return fails() ? NULL : __real_vg_calloc(n, size);
-}
-
-int __wrap_vg_reserve(void *block, size_t *cap, size_t need, size_t size)
-{
-  return fails() ? -1 : __real_vg_reserve(block, cap, need, size);
-}
+FAILS_MEMORY
 
 /* Without memory there is an error, or the same cells after a repetition, and
  * no pocket is closed in another way. */

@@ -268,18 +268,9 @@ static int fails(void)
   return fails_at && ++n_call == fails_at;
 }
 
-#define FAILS(type, name, parameters, arguments, failure)                      \
-  type __real_##name parameters;                                               \
-  type __wrap_##name parameters;                                               \
-  type __wrap_##name parameters                                                \
-  {                                                                            \
-    return fails() ? failure : __real_##name arguments;                        \
-  }
+#include "failing_calls.h"
 
-FAILS(void *, vg_alloc, (size_t n, size_t size), (n, size), NULL)
-FAILS(void *, vg_calloc, (size_t n, size_t size), (n, size), NULL)
-FAILS(int, vg_reserve, (void *block, size_t *cap, size_t need, size_t size),
-      (block, cap, need, size), -1)
+FAILS_MEMORY
 FAILS(vg_status, vg_comm_bcast,
       (struct vg_comm * c, int root, struct vg_bytes *b, struct vg_error *err),
       (c, root, b, err), vg_fail(err, VG_ERR_MEMORY, "no broadcast"))

@@ -39,24 +39,18 @@ static int fails(void)
   return 1;
 }
 
-#define WRAP(type, name, parameters, arguments, failure)                       \
-  type __real_##name parameters;                                               \
-  type __wrap_##name parameters;                                               \
-  type __wrap_##name parameters                                                \
-  {                                                                            \
-    return fails() ? failure : __real_##name arguments;                        \
-  }
+#include "failing_calls.h"
 
-WRAP(char *, strdup, (const char *text), (text), NULL)
-WRAP(char *, realpath, (const char *path, char *real), (path, real), NULL)
-WRAP(int, mkostemp, (char *path, int flags), (path, flags), -1)
-WRAP(int, fchmod, (int fd, mode_t mode), (fd, mode), -1)
-WRAP(int, fsync, (int fd), (fd), -1)
-WRAP(int, link, (const char *a, const char *b), (a, b), -1)
-WRAP(ssize_t, write, (int fd, const void *data, size_t n), (fd, data, n),
-     (faults.error == NONE   ? 0
-      : faults.error == HALF ? __real_write(fd, data, n / 2)
-                             : -1))
+FAILS(char *, strdup, (const char *text), (text), NULL)
+FAILS(char *, realpath, (const char *path, char *real), (path, real), NULL)
+FAILS(int, mkostemp, (char *path, int flags), (path, flags), -1)
+FAILS(int, fchmod, (int fd, mode_t mode), (fd, mode), -1)
+FAILS(int, fsync, (int fd), (fd), -1)
+FAILS(int, link, (const char *a, const char *b), (a, b), -1)
+FAILS(ssize_t, write, (int fd, const void *data, size_t n), (fd, data, n),
+      (faults.error == NONE   ? 0
+       : faults.error == HALF ? __real_write(fd, data, n / 2)
+                              : -1))
 
 int __real_close(int fd);
 int __wrap_close(int fd);
