@@ -141,13 +141,9 @@ grep -A5 '^    w2$' fbox/box.openfoam/constant/polyMesh/boundary >out
 says out "separationVector (0 0 -1);"
 
 if command -v checkMesh >/dev/null; then
-  foam() {
-    # shellcheck disable=SC1090
-    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
-  }
-  set +u
-  [ -n "${WM_PROJECT_DIR:-}" ] || foam
-  set -u
+  # shellcheck source=tests/cli/openfoam.bash
+  . "$here/openfoam.bash"
+  load_openfoam
   for case in fbox/box t1/ring l_wave/wave l_corner/corner l_pairs/pairs \
     demo/m/passage; do
     (cd $case.openfoam && checkMesh -allTopology) >out 2>err

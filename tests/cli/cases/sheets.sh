@@ -381,15 +381,9 @@ else echo "gmsh is not installed: its check is omitted"; fi
 
 # OpenFOAM reads the zones, and makes baffles of one.
 if command -v createBaffles >/dev/null; then
-  # Sourced in a function, whose arguments are empty: OpenFOAM's bashrc sources
-  # the files that it finds among the arguments, and this case is one.
-  foam() {
-    # shellcheck disable=SC1090
-    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
-  }
-  set +u
-  [ -n "${WM_PROJECT_DIR:-}" ] || foam
-  set -u
+  # shellcheck source=tests/cli/openfoam.bash
+  . "$here/openfoam.bash"
+  load_openfoam
   cat >all/createBafflesDict <<'END'
 FoamFile { version 2.0; format ascii; class dictionary; object createBafflesDict; }
 internalFacesOnly true;

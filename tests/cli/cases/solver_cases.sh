@@ -84,14 +84,9 @@ says $foam/0/U "freestreamValue uniform (49.96954135 0 1.744974835)"
 if ! command -v simpleFoam >/dev/null; then
   echo "simpleFoam is not installed: its first iteration is omitted"
 else
-  # A function, because this script evaluates the arguments of its caller.
-  # shellcheck disable=SC1090
-  environment() {
-    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
-  }
-  set +u
-  [ -n "${WM_PROJECT_DIR:-}" ] || environment
-  set -u
+  # shellcheck source=tests/cli/openfoam.bash
+  . "$here/openfoam.bash"
+  load_openfoam
   (cd $foam && checkMesh) >out 2>err
   says out "Mesh OK."
   (cd $foam && simpleFoam) >out 2>err

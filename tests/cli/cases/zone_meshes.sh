@@ -89,13 +89,9 @@ grep -A5 '^ *rot$' slide.openfoam/constant/polyMesh/boundary >out
 says out "cyclicAMI;"
 says out "neighbourPatch  rot_back;"
 if command -v checkMesh >/dev/null; then
-  foam() {
-    # shellcheck disable=SC1090
-    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
-  }
-  set +u
-  [ -n "${WM_PROJECT_DIR:-}" ] || foam
-  set -u
+  # shellcheck source=tests/cli/openfoam.bash
+  . "$here/openfoam.bash"
+  load_openfoam
   (cd slide.openfoam && checkMesh) >out 2>err
   says out "Mesh OK."
 else echo "OpenFOAM is not installed: checkMesh is omitted"; fi

@@ -302,13 +302,9 @@ else echo "gmsh is not installed: its check is omitted"; fi
 
 # OpenFOAM makes a region of each zone.
 if command -v splitMeshRegions >/dev/null; then
-  foam() {
-    # shellcheck disable=SC1090
-    . "${FOAM_BASHRC:-/usr/share/openfoam/etc/bashrc}" 2>/dev/null
-  }
-  set +u
-  [ -n "${WM_PROJECT_DIR:-}" ] || foam
-  set -u
+  # shellcheck source=tests/cli/openfoam.bash
+  . "$here/openfoam.bash"
+  load_openfoam
   (cd all/two.openfoam && checkMesh) >out 2>err
   says out "Mesh OK."
   (cd all/two.openfoam && splitMeshRegions -cellZones -overwrite) >out 2>err
