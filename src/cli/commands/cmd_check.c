@@ -143,7 +143,7 @@ static vg_status write_vtu(const struct arguments *a, const struct vg_mesh *m,
 {
   static const char *const name[3] = { "non_orthogonality", "skewness",
                                        "orthogonal_quality" };
-  size_t n = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  size_t n = vg_mesh_n_cell(m);
   float *value = vg_alloc(3 * n, sizeof *value);
   struct vg_vtu_field field[3];
   vg_status st;

@@ -484,7 +484,7 @@ static vg_status read_input(struct conversion *c, struct vg_error *err)
   c->info.mapbc = c->a->mapbc;
   VG_TRY(open_slices(c, err));
   if (!c->slices) VG_TRY(read_whole(c, err));
-  c->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  c->n_cell = vg_mesh_n_cell(m);
   if (c->info.has_own_mapbc)
     vg_note_own_mapbc(&c->notes, c->a->in,
                       strlen(c->a->in) - vg_format_suffix_length(c->a->in));

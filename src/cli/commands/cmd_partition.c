@@ -187,7 +187,7 @@ static vg_status read_mesh(struct run *r, struct vg_error *err)
   vg_status st;
 
   VG_TRY(vg_mesh_read(path, m, &r->info, err));
-  r->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  r->n_cell = vg_mesh_n_cell(m);
   if (!r->n_cell) {
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s: this is a surface; only a volume mesh can be "

@@ -256,7 +256,7 @@ vg_status vg_estimate_open(struct vg_estimate *e, const struct vg_mesh *m,
   *e = (struct vg_estimate){ .m = m,
                              .n_kind = m->n_tet > n_layer ? 1 : VG_SLICE_KINDS,
                              .first_tet = n_layer };
-  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex))
+  if (!vg_mesh_n_cell(m))
     return vg_fail(err, VG_ERR_INPUT,
                    "the mesh of the solution has no volume cells");
   e->volume = vg_calloc(m->n_point, sizeof *e->volume);

@@ -232,7 +232,7 @@ static vg_status judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
 
   if (!f) return vg_fail_memory(err, "the figures of the mesh");
   f->n.n_point = m->n_point;
-  f->n.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  f->n.n_cell = vg_mesh_n_cell(m);
   f->n.bad_index = vg_count_bad_index(m);
   f->n.not_finite = vg_count_not_finite(m->n_point,
                                         (const double(*)[3])m->point);

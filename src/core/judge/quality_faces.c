@@ -421,7 +421,7 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
                     m->n_tri + m->n_quad;
   vg_status st = VG_BLOCKED;
 
-  t.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  t.n_cell = vg_mesh_n_cell(m);
   if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 || n_record > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a mesh of %zu cells is too large for the check of its "

@@ -189,7 +189,7 @@ void vg_judge_shape(const struct vg_mesh *m, size_t first,
                     const struct vg_flat_part *part, float *volume,
                     struct vg_stats *f, struct vg_solver_sweep *solver)
 {
-  assert(volume || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
+  assert(volume || !vg_mesh_n_cell(m));
   for (size_t i = 0, n; i < m->n_tet; i += n) {
     n = m->n_tet - i < VG_TET_BATCH ? m->n_tet - i : VG_TET_BATCH;
     judge_batch(m, i, n, first + i, part, volume, f, solver);

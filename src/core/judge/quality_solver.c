@@ -15,7 +15,7 @@ vg_status vg_solver_begin(struct vg_solver_sweep *s, const struct vg_mesh *m,
                           const float *volume, struct vg_stats *f,
                           struct vg_error *err)
 {
-  size_t n = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  size_t n = vg_mesh_n_cell(m);
 
   assert(s && m && f);
   if (vg_reserve(&s->quality, &s->room[0], n, sizeof *s->quality) ||

@@ -30,7 +30,7 @@ vg_status vg_mesh_solver_fields(const struct vg_mesh *m,
                                 float *orthogonal_quality, struct vg_error *err)
 {
   const uint64_t first[VG_CELL_KINDS] = { 0 };
-  size_t n = m->n_tet + m->n_pyr + m->n_pri + m->n_hex, n_component;
+  size_t n = vg_mesh_n_cell(m), n_component;
   struct vg_solver_sweep *s = vg_calloc(1, sizeof *s);
   struct vg_stats *f = vg_stats_new();
   float *volume = vg_alloc(n, sizeof *volume);

@@ -268,7 +268,7 @@ static vg_status make_room(struct vg_cell_links *f, struct heads *h,
                            const struct vg_mesh *m, int is_open,
                            const char *name, struct vg_error *err)
 {
-  uint64_t n_cell = (uint64_t)m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  uint64_t n_cell = vg_mesh_n_cell(m);
   size_t n_face = m->n_tri + m->n_quad;
 
   if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)

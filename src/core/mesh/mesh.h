@@ -124,6 +124,12 @@ size_t vg_mesh_add_patch(struct vg_mesh *m, int32_t id, const char *name);
  * empty mesh. */
 void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3]);
 
+/** Number of cells of all kinds. */
+static inline size_t vg_mesh_n_cell(const struct vg_mesh *m)
+{
+  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+}
+
 /** Longest side of the bounding box of all points; 0 for an empty mesh. */
 double vg_mesh_length(const struct vg_mesh *m);
 

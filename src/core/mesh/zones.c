@@ -41,7 +41,7 @@ vg_status vg_mesh_zone_numbers(const struct vg_mesh *m, int32_t **id,
 
   *id = NULL;
   if (!m->n_zone) return VG_OK;
-  *id = to = vg_alloc(m->n_tet + m->n_pyr + m->n_pri + m->n_hex, sizeof *to);
+  *id = to = vg_alloc(vg_mesh_n_cell(m), sizeof *to);
   if (!to) return vg_fail_memory(err, "the zones");
   for (int k = 0; k < VG_ZONE_KINDS; k++)
     for (size_t z = 0; z < m->n_zone; z++)
@@ -155,7 +155,7 @@ static void number_zones(struct vg_zone *zone, const int32_t *list, size_t n)
 vg_status vg_mesh_zones_from_tags(struct vg_mesh *m, const int32_t *tag,
                                   int one, struct vg_error *err)
 {
-  const size_t n = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  const size_t n = vg_mesh_n_cell(m);
   int32_t *list = NULL;
   uint32_t *of = NULL;
   size_t n_tag = 0;

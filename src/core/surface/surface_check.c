@@ -77,7 +77,7 @@ static void mark_cells(uint8_t *used, const struct vg_mesh *m)
 
 static int has_cells(const struct vg_mesh *m)
 {
-  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex > 0;
+  return vg_mesh_n_cell(m) > 0;
 }
 
 static int has_copies(const struct vg_faces *s, const uint32_t *first)

@@ -743,8 +743,7 @@ vg_status vg_fluent_write(const char *path, const struct vg_mesh *m,
     sheets.face = vg_calloc(m->n_sheet_tri, sizeof *sheets.face);
     if (!sheets.face) VG_TRY(vg_fail_memory(err, "the sheets"));
   }
-  if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex)
-    VG_TRY(vg_foam_links(&links, m, path, err));
+  if (vg_mesh_n_cell(m)) VG_TRY(vg_foam_links(&links, m, path, err));
   n_quad = links.n_corner - 3 * (links.n_internal + m->n_tri) -
            4 * (uint64_t)m->n_quad;
   VG_TRY(vg_fluent_plan(path, m, links.n_internal, n_quad, &f, err));

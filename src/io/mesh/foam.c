@@ -706,7 +706,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
 
   for (int i = 0; i < VG_FOAM_FILES; i++) w.out[i] = none;
   if (!constant) return vg_fail_memory(err, "a file name");
-  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) {
+  if (!vg_mesh_n_cell(m)) {
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s: a mesh without cells cannot be an OpenFOAM case; "
                  "write the surface as .stl",

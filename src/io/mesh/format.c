@@ -353,7 +353,7 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
             : f->read(path, out, &info->turned, err);
   if (st < 0) return st;
   info->format = f->suffix;
-  info->n_cell = out->n_tet + out->n_pyr + out->n_pri + out->n_hex;
+  info->n_cell = vg_mesh_n_cell(out);
   return VG_OK;
 }
 

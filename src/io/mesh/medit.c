@@ -294,7 +294,7 @@ static vg_status join_tags(struct reader *r, struct vg_error *err)
 
   free(tag);
   if (st < 0) return st;
-  tag = join(r, TETS, N_SECTION, m->n_tet + m->n_pyr + m->n_pri + m->n_hex);
+  tag = join(r, TETS, N_SECTION, vg_mesh_n_cell(m));
   st = tag ? vg_mesh_zones_from_tags(m, tag, 0, err)
            : vg_fail_memory(err, "the zones");
   free(tag);

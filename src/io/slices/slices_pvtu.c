@@ -131,7 +131,7 @@ static vg_status list_all(struct vg_comm *comm, const struct vg_slices *s,
 static void add_to_piece(struct vg_mesh *m, struct entry *e)
 {
   e->point_at = m->n_point;
-  e->cell_at = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  e->cell_at = vg_mesh_n_cell(m);
   e->node_at = 4 * m->n_tet + 5 * m->n_pyr + 6 * m->n_pri + 8 * m->n_hex;
   m->n_point += e->n_point;
   m->n_tet += e->n_cell[VG_SLICE_TET];

@@ -430,7 +430,7 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
   vg_status st;
 
   assert(m);
-  if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex) {
+  if (vg_mesh_n_cell(m)) {
     st = face_build(&t, m, err);
     if (st < 0) return st;
     result.cell = vg_mesh_turn_cells(m);
@@ -634,7 +634,7 @@ vg_status vg_mesh_take_inner(struct vg_mesh *m, struct vg_inner_faces *found,
 
   assert(m && found && !m->n_sheet_tri && !m->sheet);
   memset(found, 0, sizeof *found);
-  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) return VG_OK;
+  if (!vg_mesh_n_cell(m)) return VG_OK;
   VG_TRY(face_build(&t, m, err));
   meet_all(m, &t);
   q.is_inner = vg_calloc(m->n_tri + m->n_quad, 1);

@@ -96,7 +96,7 @@ static vg_status expect(struct vg_input *in, const char *word,
 static vg_status read_owner(struct reading *r, struct vg_error *err)
 {
   const struct vg_mesh *m = r->m;
-  const size_t n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  const size_t n_cell = vg_mesh_n_cell(m);
   int64_t n[2];
   vg_status st;
 

@@ -192,8 +192,7 @@ static struct vg_unit_options unit_options(const struct vg_mesh *m,
     n_layer += u.n_layer[0] + u.n_layer[1] + u.n_layer[3];
   }
   if (at) u.is_wall = at->is_wall;
-  u.cluster = vg_unit_cluster(o, (uint64_t)m->n_tet + m->n_pyr + m->n_pri +
-                                   m->n_hex - n_layer);
+  u.cluster = vg_unit_cluster(o, (uint64_t)vg_mesh_n_cell(m) - n_layer);
   return u;
 }
 
@@ -224,7 +223,7 @@ vg_status vg_solver_part(const struct vg_mesh *m,
                          struct vg_error *err)
 {
   assert(o && name && report);
-  assert(part || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
+  assert(part || !vg_mesh_n_cell(m));
 
   struct vg_solver_report r = { .time_graph = vg_clock() };
   struct vg_unit_options uo = unit_options(m, layers, o);

@@ -145,11 +145,6 @@ static vg_status add_cell_field(const char *path, struct vg_solution *s,
   return st;
 }
 
-static size_t count_cells(const struct vg_mesh *m)
-{
-  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
-}
-
 /* Where the field is: at the points, or in the cells. */
 static const char *section_of(struct vg_input *in, const char *name)
 {
@@ -186,8 +181,8 @@ static vg_status read_array(const char *path, void *from, const char *name,
   if (s->n_field) vg_mesh_release(&m);
   else vg_mesh_move(&s->m, &m);
   st = take_part(path, name,
-                 *section == 'P' ? s->m.n_point : count_cells(&s->m), n, part,
-                 value, err);
+                 *section == 'P' ? s->m.n_point : vg_mesh_n_cell(&s->m), n,
+                 part, value, err);
   if (st >= 0 && *section == 'P') return add_field(path, s, name, value, err);
   if (st >= 0) st = add_cell_field(path, s, name, value, err);
   free(value);
@@ -403,7 +398,7 @@ static vg_status read_volume_field(const char *path, void *from,
 
   if (!file) return vg_fail_memory(err, "the name of a field");
   VG_TRY(vg_foam_field_read(from, file, &n, &cell, err));
-  VG_TRY(take_part(path, name, count_cells(&s->m), n, part, cell, err));
+  VG_TRY(take_part(path, name, vg_mesh_n_cell(&s->m), n, part, cell, err));
   st = add_cell_field(path, s, name, cell, err);
 done:
   free(file);

@@ -12,11 +12,6 @@
 #include "run/report/report.h"
 #include "run/settings/length.h"
 
-static size_t n_cell(const struct vg_mesh *m)
-{
-  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
-}
-
 static void count_line(FILE *to, const char *what, size_t n)
 {
   char text[32];
@@ -86,12 +81,12 @@ json_t *vg_report_counts_json(const struct vg_mesh *m, const double lo[3],
   return json_pack("{s:I s:I s:I s:I s:I s:I s:I s:I s:I s:[fff] s:[fff]}",
                    "points", (json_int_t)m->n_point, "triangles",
                    (json_int_t)m->n_tri, "quadrilaterals",
-                   (json_int_t)m->n_quad, "cells", (json_int_t)n_cell(m),
-                   "tetrahedra", (json_int_t)m->n_tet, "pyramids",
-                   (json_int_t)m->n_pyr, "prisms", (json_int_t)m->n_pri,
-                   "hexahedra", (json_int_t)m->n_hex, "patches",
-                   (json_int_t)n_shown(m), "lower", lo[0], lo[1], lo[2],
-                   "upper", hi[0], hi[1], hi[2]);
+                   (json_int_t)m->n_quad, "cells",
+                   (json_int_t)vg_mesh_n_cell(m), "tetrahedra",
+                   (json_int_t)m->n_tet, "pyramids", (json_int_t)m->n_pyr,
+                   "prisms", (json_int_t)m->n_pri, "hexahedra",
+                   (json_int_t)m->n_hex, "patches", (json_int_t)n_shown(m),
+                   "lower", lo[0], lo[1], lo[2], "upper", hi[0], hi[1], hi[2]);
 }
 
 /* Faces, area and bounding box of a patch. */

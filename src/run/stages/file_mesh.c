@@ -61,17 +61,16 @@ static vg_status serve(struct vg_file_mesh *f, struct vg_error *err)
     return vg_fail_memory(err, "the mesh");
   }
   for (size_t p = 0; p < m->n_point; p++) f->identity[p] = (uint32_t)p;
-  f->slices = (struct vg_slices){
-    .n_point = m->n_point,
-    .n_cell = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex },
-    .n_boundary_point = leading_boundary(m, on),
-    .boundary = m,
-    .n_slice = 1,
-    .n_served = m->n_tet + m->n_pyr + m->n_pri + m->n_hex,
-    .get = get_all,
-    .put = put_all,
-    .user = f
-  };
+  f->slices = (struct vg_slices){ .n_point = m->n_point,
+                                  .n_cell = { m->n_tet, m->n_pyr, m->n_pri,
+                                              m->n_hex },
+                                  .n_boundary_point = leading_boundary(m, on),
+                                  .boundary = m,
+                                  .n_slice = 1,
+                                  .n_served = vg_mesh_n_cell(m),
+                                  .get = get_all,
+                                  .put = put_all,
+                                  .user = f };
   free(on);
   return VG_OK;
 }

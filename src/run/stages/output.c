@@ -471,7 +471,7 @@ static vg_status write_foam(struct writing *w, const char *path,
                             const struct vg_foam_options *options,
                             struct vg_error *err)
 {
-  size_t n = w->whole.n_tet + w->whole.n_pyr + w->whole.n_pri + w->whole.n_hex;
+  size_t n = vg_mesh_n_cell(&w->whole);
   vg_status st = vg_foam_write(path, &w->whole, options, err);
 
   if (st >= 0 && w->part)
