@@ -151,19 +151,15 @@ vg_status vg_point_values(const struct vg_mesh *m, const double *cell,
                           double *point, struct vg_error *err)
 {
   const size_t n[4] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  const uint32_t *const node[4] = { (const uint32_t *)m->tet,
-                                    (const uint32_t *)m->pyr,
-                                    (const uint32_t *)m->pri,
-                                    (const uint32_t *)m->hex };
   struct sums *at = vg_calloc(m->n_point, sizeof *at);
 
   if (!at) return vg_fail_memory(err, "values at points");
   for (int k = 0; k < 4; k++) {
-    add_cells(m, k, n[k], node[k], cell, at);
+    add_cells(m, k, n[k], vg_mesh_nodes(m, k), cell, at);
     cell += n[k];
   }
   for (size_t p = 0; p < m->n_point; p++) fit(at + p);
-  for (int k = 0; k < 4; k++) lend_gradients(k, n[k], node[k], at);
+  for (int k = 0; k < 4; k++) lend_gradients(k, n[k], vg_mesh_nodes(m, k), at);
   for (size_t p = 0; p < m->n_point; p++) point[p] = at_point(at + p);
   free(at);
   return VG_OK;

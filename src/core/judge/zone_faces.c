@@ -77,18 +77,16 @@ static void each_cell(struct work *w,
 {
   const struct vg_mesh *m = w->m;
   const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  const uint32_t *const cell[VG_ZONE_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
 
   for (int k = 0; k < VG_ZONE_KINDS; k++) {
+    const uint32_t *node = vg_mesh_nodes(m, k);
+    const size_t width = (size_t)vg_cell_faces[k].width;
     uint64_t end = 0;
     size_t zone = 0;
 
     for (size_t c = 0; c < n[k] && !w->is_bad; c++) {
       vg_mesh_zone_walk(m, k, c, &zone, &end);
-      visit(w, cell[k] + c * (size_t)vg_cell_faces[k].width, k, (uint32_t)zone);
+      visit(w, node + c * width, k, (uint32_t)zone);
     }
   }
 }

@@ -106,16 +106,13 @@ static uint32_t take_point(struct doubling *d, uint32_t g, uint32_t p)
 static void take_cells(struct doubling *d, uint32_t g)
 {
   struct vg_mesh *m = d->m;
-  uint32_t *const cell[VG_ZONE_KINDS] = { (uint32_t *)m->tet,
-                                          (uint32_t *)m->pyr,
-                                          (uint32_t *)m->pri,
-                                          (uint32_t *)m->hex };
 
   for (size_t z = 0; z < m->n_zone; z++)
     for (int k = 0; k < VG_ZONE_KINDS && d->group[z] == g; k++) {
       const size_t w = (size_t)vg_cell_faces[k].width,
                    n = w * m->zone[z].n_cell[k];
-      uint32_t *node = n ? cell[k] + w * vg_mesh_zone_start(m, z, k) : NULL;
+      uint32_t *node = n ? vg_mesh_nodes(m, k) + w * vg_mesh_zone_start(m, z, k)
+                         : NULL;
 
       for (size_t i = 0; i < n; i++) {
         const uint32_t p = take_point(d, g, node[i]);

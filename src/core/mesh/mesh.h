@@ -130,6 +130,16 @@ static inline size_t vg_mesh_n_cell(const struct vg_mesh *m)
   return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
 }
 
+/** Nodes of the cells of a kind, one cell after the other. 0: tetrahedra, 1:
+ * pyramids, 2: prisms, 3: hexahedra. */
+static inline uint32_t *vg_mesh_nodes(const struct vg_mesh *m, int kind)
+{
+  uint32_t *const cell[4] = { (uint32_t *)m->tet, (uint32_t *)m->pyr,
+                              (uint32_t *)m->pri, (uint32_t *)m->hex };
+
+  return cell[kind];
+}
+
 /** Longest side of the bounding box of all points; 0 for an empty mesh. */
 double vg_mesh_length(const struct vg_mesh *m);
 

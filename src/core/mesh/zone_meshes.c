@@ -159,21 +159,14 @@ void vg_zone_parts_release(struct vg_zone_parts *p)
 /* Cells of a kind in zone z, with the numbers of the points of m. */
 static void copy_cells(const struct vg_mesh *m, size_t z, struct vg_mesh *out)
 {
-  const uint32_t *const from[VG_ZONE_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
-  uint32_t *const to[VG_ZONE_KINDS] = { (uint32_t *)out->tet,
-                                        (uint32_t *)out->pyr,
-                                        (uint32_t *)out->pri,
-                                        (uint32_t *)out->hex };
-
   for (int k = 0; k < VG_ZONE_KINDS; k++) {
     const size_t w = (size_t)vg_cell_faces[k].width,
                  n = w * m->zone[z].n_cell[k];
 
     if (n)
-      memcpy(to[k], from[k] + w * vg_mesh_zone_start(m, z, k), n * sizeof **to);
+      memcpy(vg_mesh_nodes(out, k),
+             vg_mesh_nodes(m, k) + w * vg_mesh_zone_start(m, z, k),
+             n * sizeof(uint32_t));
   }
 }
 

@@ -206,19 +206,16 @@ static double volume(const struct vg_mesh *m, int kind, const uint32_t *node,
 
 void vg_mesh_zone_seed(const struct vg_mesh *m, size_t z, double seed[3])
 {
-  const uint32_t *const cell[VG_ZONE_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
   double most = -INFINITY, centre[3];
 
   assert(z < m->n_zone && vg_mesh_zone_cells(m, z));
   for (int k = 0; k < VG_ZONE_KINDS; k++) {
+    const uint32_t *node = vg_mesh_nodes(m, k);
     const size_t w = (size_t)vg_cell_faces[k].width;
     const uint64_t first = vg_mesh_zone_start(m, z, k);
 
     for (uint64_t c = first; c < first + m->zone[z].n_cell[k]; c++) {
-      const double v = volume(m, k, cell[k] + w * c, centre);
+      const double v = volume(m, k, node + w * c, centre);
 
       if (v <= most) continue;
       most = v;

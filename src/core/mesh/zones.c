@@ -78,10 +78,6 @@ vg_status vg_mesh_sort_zones(struct vg_mesh *m, const uint32_t *of,
 {
   static const int width[VG_ZONE_KINDS] = { 4, 5, 6, 8 };
   const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  uint32_t *const cell[VG_ZONE_KINDS] = { (uint32_t *)m->tet,
-                                          (uint32_t *)m->pyr,
-                                          (uint32_t *)m->pri,
-                                          (uint32_t *)m->hex };
   uint64_t *at = vg_alloc(m->n_zone, sizeof *at);
   uint32_t *to = NULL;
   size_t most = 0;
@@ -99,8 +95,9 @@ vg_status vg_mesh_sort_zones(struct vg_mesh *m, const uint32_t *of,
     for (size_t z = 0; z < m->n_zone; z++) m->zone[z].n_cell[k] = 0;
     for (size_t c = 0; c < n[k]; c++) m->zone[of[c]].n_cell[k]++;
     for (size_t z = 0; z < m->n_zone; z++) at[z] = vg_mesh_zone_start(m, z, k);
-    sort_kind(of, n[k], width[k], at, cell[k], to);
-    if (n[k]) memcpy(cell[k], to, n[k] * (size_t)width[k] * sizeof *to);
+    sort_kind(of, n[k], width[k], at, vg_mesh_nodes(m, k), to);
+    if (n[k])
+      memcpy(vg_mesh_nodes(m, k), to, n[k] * (size_t)width[k] * sizeof *to);
   }
   free(at);
   free(to);
@@ -211,10 +208,6 @@ vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
                              struct vg_error *err)
 {
   const size_t n[VG_ZONE_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  const uint32_t *const cell[VG_ZONE_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
   struct vg_sheet_table t;
   vg_status st;
 
@@ -222,12 +215,14 @@ vg_status vg_mesh_zone_sides(const struct vg_mesh *m, uint32_t (*zone)[2],
   VG_TRY(vg_sheet_table_new(&t, m, err));
   memset(zone, 0xff, m->n_sheet_tri * sizeof *zone);
   for (int k = 0; k < VG_ZONE_KINDS; k++) {
+    const uint32_t *node = vg_mesh_nodes(m, k);
+    const size_t width = (size_t)vg_cell_faces[k].width;
     uint32_t z = 0;
     uint64_t end = m->n_zone ? m->zone[0].n_cell[k] : n[k];
 
     for (size_t c = 0; c < n[k]; c++) {
       while (c >= end) end += m->zone[++z].n_cell[k];
-      meet(&t, k, cell[k] + c * (size_t)vg_cell_faces[k].width, z, zone);
+      meet(&t, k, node + c * width, z, zone);
     }
   }
   vg_sheet_table_release(&t);

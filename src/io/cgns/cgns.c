@@ -661,15 +661,11 @@ static void put_cells(struct vg_output *out, const struct vg_cgns *c,
                       const struct vg_cgns_array *a)
 {
   const struct vg_mesh *m = c->frame;
-  const uint32_t *const cell[VG_CGNS_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
   size_t n_node = (size_t)kinds[a->which].n_node;
   size_t n = (size_t)(a->size / (uint64_t)index_size(&c->places)) / n_node;
 
   vg_cgns_put_cells(out, &c->places, a->which, n,
-                    cell[a->which] + a->first * n_node, NULL);
+                    vg_mesh_nodes(m, a->which) + a->first * n_node, NULL);
 }
 
 static void put_faces(struct vg_output *out, const struct vg_cgns *c,

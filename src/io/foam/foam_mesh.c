@@ -193,15 +193,14 @@ static vg_status put_cells(struct cells *c, struct vg_mesh *m, uint32_t *number,
     start[k] = k ? start[k - 1] + n[k - 1] : 0;
   }
   for (size_t i = 0; i < c->l->n_cell; i++) {
-    uint32_t *const list[4] = { (uint32_t *)m->tet, (uint32_t *)m->pyr,
-                                (uint32_t *)m->pri, (uint32_t *)m->hex };
     const int k = c->kind[i], w = vg_cell_faces[k].width;
     uint32_t node[MOST_NODES];
 
     if (!order(c, i, node))
       return vg_fail(err, VG_ERR_FORMAT,
                      "%s: the faces of cell %zu do not close it", c->name, i);
-    memcpy(list[k] + (size_t)w * at[k], node, (size_t)w * sizeof *node);
+    memcpy(vg_mesh_nodes(m, k) + (size_t)w * at[k], node,
+           (size_t)w * sizeof *node);
     number[i] = (uint32_t)(start[k] + at[k]++);
   }
 done:

@@ -330,10 +330,6 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
                       uint64_t at[VG_GMSH_KINDS])
 {
   const struct vg_mesh *m = g->frame;
-  const uint32_t *const cell[VG_GMSH_KINDS] = { (const uint32_t *)m->tet,
-                                                (const uint32_t *)m->pyr,
-                                                (const uint32_t *)m->pri,
-                                                (const uint32_t *)m->hex };
 
   for (int k = 0; k < VG_GMSH_KINDS; k++) {
     uint64_t first = 0;
@@ -347,7 +343,8 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
       if (!m->point) vg_output_skip(out, n * cell_size(k));
       else
         vg_gmsh_put_cells(out, g, k, first, (size_t)n,
-                          cell[k] + first * (size_t)kinds[k].n_node, NULL);
+                          vg_mesh_nodes(m, k) + first * (size_t)kinds[k].n_node,
+                          NULL);
       first += n;
     }
   }

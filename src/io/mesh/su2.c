@@ -232,17 +232,14 @@ static void put_markers(struct vg_output *out, const struct vg_su2 *s)
 void vg_su2_put(struct vg_output *out, const struct vg_su2 *s)
 {
   const struct vg_mesh *m = s->frame;
-  const uint32_t *const cell[VG_SU2_KINDS] = { (const uint32_t *)m->tet,
-                                               (const uint32_t *)m->pyr,
-                                               (const uint32_t *)m->pri,
-                                               (const uint32_t *)m->hex };
 
   put_head(out, s);
   for (int k = 0; k < VG_SU2_KINDS; k++)
     if (!m->point) vg_output_skip(out, s->n_cell[k] * cell_line(s, k));
     else
       for (uint64_t i = 0; i < s->n_cell[k]; i++)
-        vg_su2_put_cell(out, s, k, i, cell[k] + i * (uint64_t)kinds[k].n_node,
+        vg_su2_put_cell(out, s, k, i,
+                        vg_mesh_nodes(m, k) + i * (uint64_t)kinds[k].n_node,
                         NULL);
   put_points_head(out, s);
   if (!m->point) vg_output_skip(out, m->n_point * point_line(s));
