@@ -267,9 +267,8 @@ static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
             (int)b->surface.patch[b->surface.n_patch - 1].id, r.n);
   if (r.n_curved)
     vg_note(b->notes,
-            "%zu of these caps have rims that lie in no plane, such as the "
-            "common rim of two missing sides: look whether the body is meant "
-            "to end there",
+            "caps on rims that lie in no plane, such as the common rim of two "
+            "missing sides: %zu; check that the body is meant to end there",
             r.n_curved);
 done:
   return st;

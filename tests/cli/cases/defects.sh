@@ -47,7 +47,7 @@ awk '/^v/ && $4 > 8 { $4 += 2 * cos(2 * atan2($3, $2)) } { print }' tube.obj \
   >wavy.obj
 vanguard check -q wavy.obj --close-holes yes --flow external
 exits 0
-says out "1 of these caps have rims that lie in no plane"
+says out "caps on rims that lie in no plane, such as the common rim of two missing sides: 1"
 
 # A plane sheet bounds no volume, whatever closes its rim.
 cat >sheet.ugrid <<'END'
