@@ -51,10 +51,10 @@ ENVIRONMENT = {
 
 
 def plain(text):
-    """A report without its numbers, and without what else depends on the
-    moment: the stage with the greatest memory, and free memory that is not
-    known."""
-    text = NUMBER.sub(b"#", text)
+    """A report without its numbers and the width of their columns, and without
+    what else depends on the moment: the stage with the greatest memory, and free
+    memory that is not known."""
+    text = re.sub(rb" +", b" ", NUMBER.sub(b"#", text))
     text = re.sub(rb"(?m)^.*# MB.*\n", b"", text)
     text = re.sub(rb'("stage": ")[a-z ,]+', rb"\1#", text)
     text = re.sub(rb'("[a-z_]*(memory|free|available)[a-z_]*": )null',
