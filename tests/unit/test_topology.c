@@ -699,6 +699,35 @@ static void fans_stand_where_they_are_needed(void **state)
   }
 }
 
+/* Sharp edges have fans unless the edges of the wall along them are long, here
+ * 200 times as long as in the first case. Edges at right angles have fans only
+ * in a chain with sharp ones: around the end of the wedge, not around a block.
+ */
+static void sharp_edges_have_fans(void **state)
+{
+  struct made s = MADE_INIT, t = MADE_INIT, u = MADE_INIT;
+
+  (void)state;
+  extrude(&s.m, 8, wedge, 64, 1, 0);
+  build(&s, 1, ~0u, VG_FANS_SHARP);
+  assert_true(columns_at(&s, 1.5, 0.5, 0) >= 5);
+  assert_true(columns_at(&s, 0.5, 1, 0.0524) > 1);
+  assert_int_equal(columns_at(&s, 0.5, 0.5, 0.0524), 1);
+  check(&s, 0.01);
+  made_release(&s);
+
+  extrude(&t.m, 8, wedge, 64, 1, 0);
+  for (size_t i = 0; i < t.m.n_point; i++) t.m.point[i][1] *= 200;
+  build(&t, 1, ~0u, VG_FANS_SHARP);
+  assert_int_equal(columns_at(&t, 1.5, 100, 0), 1);
+  made_release(&t);
+
+  extrude(&u.m, 4, square, 2, 0, 0);
+  build(&u, 1, ~0u, VG_FANS_SHARP);
+  assert_int_equal(u.c.n_column, u.m.n_point);
+  made_release(&u);
+}
+
 static void the_same_bytes_twice(void **state)
 {
   struct made s = MADE_INIT, t = MADE_INIT;
@@ -731,8 +760,8 @@ static void bad_angles_are_refused(void **state)
 
   (void)state;
   shape_box(&s.m, 2, 1);
-  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -1, NULL, &s.c, &s.t,
-                                     &err),
+  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -0.5, NULL, &s.c,
+                                     &s.t, &err),
                    VG_ERR_INPUT);
   assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, NAN, NULL, &s.c, &s.t,
                                      &err),
@@ -774,6 +803,7 @@ int main(void)
     cmocka_unit_test(a_cone_has_a_fan_about_its_base),
     cmocka_unit_test(a_pyramid_has_a_fan_at_its_apex),
     cmocka_unit_test(fans_stand_where_they_are_needed),
+    cmocka_unit_test(sharp_edges_have_fans),
     cmocka_unit_test(the_same_bytes_twice),
     cmocka_unit_test(bad_angles_are_refused),
     cmocka_unit_test(concave_edges_have_no_fans),

@@ -32,6 +32,8 @@ struct vg_layer_request {
                    earlier. */
 };
 
+#define VG_FANS_SHARP (-1.0)
+
 struct vg_layer_options {
   const struct vg_layer_request *patch; /* [surface->n_patch] requested
                                            layers. */
@@ -41,7 +43,9 @@ struct vg_layer_options {
   void *law_user;
   double fan_angle;     /* Edges that turn by more than this angle, in degrees,
                            get fans. 180: no fans; 0: only at points that one
-                           column cannot serve. */
+                           column cannot serve; VG_FANS_SHARP: there, and at
+                           chains of sharp edges whose triangles are not
+                           stretched along them. */
   double end;           /* A column ends where its next layer would be thicker
                            than this factor times the local edge length. */
   double gap;           /* Share of the distance to the opposite surface that a

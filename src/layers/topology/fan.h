@@ -127,7 +127,8 @@ struct vg_fans {
 void vg_fans_release(struct vg_fans *f);
 
 /** Finds the fans of a wall; *f must be empty. fan_angle >= 180: no fans; 0:
- * fans only where one column does not see all faces well enough. */
+ * fans only where one column does not see all faces well enough; VG_FANS_SHARP:
+ * also at sharp edges with triangles that are not stretched along them. */
 vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
                         const struct vg_slide *slide, double fan_angle,
                         struct vg_fans *f, struct vg_error *err);

@@ -25,10 +25,11 @@ static vg_status add_face(struct faces *s, uint32_t a, uint32_t b, uint32_t c,
 }
 
 /* Chain of a ridge as seen from the point at which half-edge h starts; a single
- * column if the point has no fan. */
+ * column if no fan of the point is across it. */
 static struct vg_fan_chain chain_at(const struct faces *s, uint32_t h)
 {
-  struct vg_fan_chain none = { 0, 0, 0, 0 };
+  const uint8_t at = s->f->at[h];
+  struct vg_fan_chain none = { at, at, 0, 0 };
   uint32_t i = s->f->chain_of[h];
 
   return i == VG_NO_INDEX ? none : s->f->chain[i];

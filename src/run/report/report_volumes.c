@@ -47,7 +47,7 @@ void vg_report_volumes_text(FILE *to, const struct vg_solver_quality *q)
   if (q->n_skewness)
     fputs(
       "    skewness above 4 is mostly due to sharp edges with one column per "
-      "point, which\n    fans avoid (--cells mixed --fan-angle 85), and to "
+      "point, which\n    fans avoid (--cells mixed, --fan-angle 85), and to "
       "points where such edges end\n",
       to);
 }

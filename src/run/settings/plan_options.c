@@ -204,6 +204,7 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
   struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
 
   if (!isnan(s->layer.fan_angle)) o.fan_angle = s->layer.fan_angle;
+  else if (s->cells != VG_LAYER_TETS) o.fan_angle = VG_FANS_SHARP;
   if (!isnan(s->layer.end)) o.end = s->layer.end;
   else if (s->cells != VG_LAYER_TETS) o.end = VG_LAYER_END_MIXED;
   o.gap = s->layer.gap;

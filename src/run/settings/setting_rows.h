@@ -402,7 +402,8 @@ VG_ROW(REAL, layer, fan_angle, "fan_angle", NAN,
   .lo = 0, .hi = 180, .optional = 1, .unit = "degrees", .help = "Convex edges "
   "that turn by more than this angle get fans (several columns per point, "
   "multiple normals); 0: only points from which no single direction sees all "
-  "faces; 180: no fans; -: 0, or 60 for a plane section")
+  "faces; 180: no fans; -: 60 for a plane section, 0 for tetrahedra, otherwise "
+  "0 and chains of sharp edges")
 VG_ROW(REAL, layer, gap, "layer_gap", layers.gap,
   .hi = 0.49, .above_lo = 1, .unit = "", .help = "Largest fraction of the "
   "distance to the opposite surface that layers may take up")
