@@ -321,6 +321,31 @@ static void closes_a_thin_wedge(void **state)
   end(&s);
 }
 
+/* The tops of layers that converge in a concave corner:
+ *
+ *     o-----------------o-----------------o
+ *     |                                   |
+ *     o-----------------o-----------------o
+ *
+ * Triangles between the long sides alone would have angles of 16 degrees. */
+static void adds_points_in_narrow_strips(void **state)
+{
+  static const double strip[6][2] = { { 0, 0 },   { 2, 0 },   { 4, -0.2 },
+                                      { 4, 1.2 }, { 2, 0.8 }, { 0, 0.6 } };
+  const struct law l = { { 0, 0 }, 2, 0, 2 };
+  struct plane s;
+
+  (void)state;
+  begin(&s);
+  for (int i = 0; i < 6; i++) put(&s, strip[i][0], strip[i][1]);
+  close_from(&s, 0);
+  assert_int_equal(run(&s, &l), VG_OK);
+  check_topology(&s);
+  assert_true(s.n_new > 0);
+  assert_true(measure(&s, &l).angle_min_deg > 20);
+  end(&s);
+}
+
 static void follows_a_ragged_boundary(void **state)
 {
   const struct law l = { { 0, 0 }, 0.02, 0, 1 };
@@ -491,6 +516,7 @@ int main(void)
     cmocka_unit_test(keeps_loops_that_touch),
     cmocka_unit_test(closes_a_region_finer_than_its_size),
     cmocka_unit_test(closes_a_thin_wedge),
+    cmocka_unit_test(adds_points_in_narrow_strips),
     cmocka_unit_test(follows_a_ragged_boundary),
     cmocka_unit_test(gives_the_same_bytes_twice),
     cmocka_unit_test(names_crossing_segments),

@@ -14,8 +14,8 @@
 #define BLUNT 1.05   /* 60 degrees */
 #define PERHAPS 0.14 /* 8 degrees */
 #define RATIO 6.0
-#define PAIR 0.96      /* 55 degrees, at two successive points. */
-#define STRAIGHT 0.001 /* At points between straight segments. */
+#define PAIR 0.96     /* 55 degrees, at two successive points. */
+#define STRAIGHT 0.01 /* At points between straight segments. */
 #define BULGE                                                                  \
   0.3 /* Largest distance of the curve from a segment, relative                \
          to its length. */

@@ -99,7 +99,9 @@ struct vg_remeshing {
                                        and after. */
   double seconds;
   struct vg_put_back back;
-  struct vg_edge_spacing spacing[VG_SPACING_N];
+  struct vg_edge_spacing spacing[VG_SPACING_N]; /* Of all rows. */
+  size_t n_row; /* Rows of the table `surface`. */
+  struct vg_edge_spacing (*row)[VG_SPACING_N]; /* [n_row] owned */
   double volume[2]; /* Volume enclosed by the remeshed surface, and by the CAD
                        model as Open CASCADE integrates it; NAN if one of them
                        is not closed. */

@@ -444,7 +444,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(vg_inner_lines_remesh(b, &lines, show, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
-  VG_TRY(vg_surface_spacing_measure(b, r->spacing, err));
+  VG_TRY(vg_surface_spacing_measure(b, r, err));
   note_faults(b);
   if (vg_read_is_cad(b->read) && !b->model.cad)
     vg_note(b->notes,
@@ -557,6 +557,7 @@ void vg_remeshing_release(struct vg_remeshing *r)
   vg_remesh_report_release(&r->report);
   free(r->face);
   free(r->area);
+  free(r->row);
   memset(r, 0, sizeof *r);
 }
 

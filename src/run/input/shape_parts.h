@@ -265,10 +265,12 @@ void vg_surface_sizes_release(struct vg_surface_sizes *s);
  * requests them: of the equilateral triangles that have the area of the
  * triangles at leading edges, or the height of those at trailing edges, and the
  * extent along the span of the triangles at the root and the tips. Bases of
- * blunt trailing edges and cut tips do not count. to: all 0. O(n) for each row.
+ * blunt trailing edges and cut tips do not count. O(n) for each row.
+ *
+ * @param r  out: spacing, all 0 on entry, and row
  * VG_ERR_MEMORY. */
 vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
-                                     struct vg_edge_spacing to[VG_SPACING_N],
+                                     struct vg_remeshing *r,
                                      struct vg_error *err);
 
 /** Adds a note if `auto` remeshes because of slivers, and a warning if slivers

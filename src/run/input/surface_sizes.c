@@ -2,6 +2,7 @@
 /* The table `surface`: target edge lengths of single patches, curves, leading
  * edges and strips of a surface to be remeshed, as largest sizes at its current
  * points, and curves along which edges are stretched. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -581,7 +582,7 @@ static int is_spaced(const struct vg_surface_row *row)
 
 static vg_status measure_rows(const struct vg_boundary *b, uint8_t *mark,
                               uint8_t (*on)[2], const double *chord,
-                              struct vg_edge_spacing to[VG_SPACING_N],
+                              struct vg_edge_spacing (*of_row)[VG_SPACING_N],
                               struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
@@ -590,6 +591,7 @@ static vg_status measure_rows(const struct vg_boundary *b, uint8_t *mark,
 
   for (size_t i = 0; i < s->n_surface; i++) {
     const struct vg_surface_row *row = &s->surface_row[i];
+    struct vg_edge_spacing *to = of_row[i];
 
     if (!is_spaced(row)) continue;
     memset(mark, 0, m->n_patch);
@@ -610,8 +612,29 @@ done:
   return st;
 }
 
+/* Turns the sums of all rows into means, of each row and of all. */
+static void take_means(struct vg_remeshing *r)
+{
+  for (int k = 0; k < VG_SPACING_N; k++) {
+    struct vg_edge_spacing *all = &r->spacing[k];
+
+    for (size_t i = 0; i <= r->n_row; i++) {
+      struct vg_edge_spacing *to = i < r->n_row ? &r->row[i][k] : all;
+
+      if (!to->n) continue;
+      if (to != all) {
+        all->asked += to->asked;
+        all->reached += to->reached;
+        all->n += to->n;
+      }
+      to->asked /= (double)to->n;
+      to->reached /= (double)to->n;
+    }
+  }
+}
+
 vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
-                                     struct vg_edge_spacing to[VG_SPACING_N],
+                                     struct vg_remeshing *r,
                                      struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
@@ -622,6 +645,7 @@ vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
   uint8_t *mark;
   vg_status st;
 
+  assert(!r->row);
   for (size_t i = 0; i < s->n_surface; i++) {
     any |= is_spaced(&s->surface_row[i]);
     trail |= s->surface_row[i].trail > 0;
@@ -629,17 +653,16 @@ vg_status vg_surface_spacing_measure(const struct vg_boundary *b,
   if (!any) return VG_OK;
   chord = vg_calloc(m->n_point, sizeof *chord);
   mark = vg_calloc(3 * m->n_patch, 1);
-  if (!chord || !mark) VG_TRY(vg_fail_memory(err, "the edges of the surface"));
+  r->row = vg_calloc(s->n_surface, sizeof *r->row);
+  if (!chord || !mark || !r->row)
+    VG_TRY(vg_fail_memory(err, "the edges of the surface"));
+  r->n_row = s->n_surface;
   if (trail) VG_TRY(find_trailing(b, &t, err));
   for (size_t i = 0; i < t.n; i++)
     for (int k = 0; k < 2; k++) chord[t.edge[i].point[k]] = t.edge[i].chord;
-  VG_TRY(
-    measure_rows(b, mark, (uint8_t(*)[2])(mark + m->n_patch), chord, to, err));
-  for (int k = 0; k < VG_SPACING_N; k++) {
-    if (!to[k].n) continue;
-    to[k].asked /= (double)to[k].n;
-    to[k].reached /= (double)to[k].n;
-  }
+  VG_TRY(measure_rows(b, mark, (uint8_t(*)[2])(mark + m->n_patch), chord,
+                      r->row, err));
+  take_means(r);
 done:
   vg_trailing_release(&t);
   free(chord);

@@ -59,8 +59,8 @@ static void back_text(FILE *to, const struct vg_put_back *b)
   distance_text(to, "distance of points from CAD after projection", &b->off[1]);
 }
 
-static void spacing_text(FILE *to,
-                         const struct vg_edge_spacing spacing[VG_SPACING_N])
+/* Each row by itself if several request the same place. */
+static void spacing_text(FILE *to, const struct vg_remeshing *n)
 {
   static const char *const place[VG_SPACING_N] = {
     "edge length at leading edges, % of the local chord",
@@ -69,10 +69,20 @@ static void spacing_text(FILE *to,
     "edge length along the span at tips, % of the semispan"
   };
 
-  for (int k = 0; k < VG_SPACING_N; k++)
-    if (spacing[k].n)
-      fprintf(to, "  %s: requested %.4g, reached %.4g\n", place[k],
-              100 * spacing[k].asked, 100 * spacing[k].reached);
+  for (int k = 0; k < VG_SPACING_N; k++) {
+    size_t n_row = 0;
+
+    for (size_t i = 0; i < n->n_row; i++) n_row += n->row[i][k].n > 0;
+    for (size_t i = 0; i < n->n_row; i++) {
+      const struct vg_edge_spacing *s = &n->row[i][k];
+      char row[64] = "";
+
+      if (!s->n) continue;
+      if (n_row > 1) snprintf(row, sizeof row, ", row %zu of `surface`", i + 1);
+      fprintf(to, "  %s%s: requested %.4g, reached %.4g\n", place[k], row,
+              100 * s->asked, 100 * s->reached);
+    }
+  }
 }
 
 static void stretch_text(FILE *to, const struct vg_remesh_report *r)
@@ -137,7 +147,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
             "  remeshed %d times, with the target edge length halved where "
             "triangles intersected\n",
             r->n_round);
-  spacing_text(to, n->spacing);
+  spacing_text(to, n);
   stretch_text(to, r);
   bad_text(to, r);
 }
@@ -216,12 +226,26 @@ static json_t *stretch_json(const struct vg_remesh_report *r)
                    (json_int_t)n[4]);
 }
 
-static json_t *spacing_json(const struct vg_edge_spacing *s)
+static json_t *spacing_json(const struct vg_remeshing *n, int place)
 {
+  const struct vg_edge_spacing *s = &n->spacing[place];
+  json_t *rows;
+
   if (!s->n) return json_null();
-  return json_pack("{s:f s:f s:I}", "requested_percent", 100 * s->asked,
+  rows = json_array();
+  for (size_t i = 0; i < n->n_row; i++) {
+    const struct vg_edge_spacing *r = &n->row[i][place];
+
+    if (r->n)
+      json_array_append_new(rows, json_pack("{s:I s:f s:f s:I}", "row",
+                                            (json_int_t)(i + 1),
+                                            "requested_percent", 100 * r->asked,
+                                            "reached_percent", 100 * r->reached,
+                                            "triangles", (json_int_t)r->n));
+  }
+  return json_pack("{s:f s:f s:I s:o}", "requested_percent", 100 * s->asked,
                    "reached_percent", 100 * s->reached, "triangles",
-                   (json_int_t)s->n);
+                   (json_int_t)s->n, "rows", rows);
 }
 
 json_t *vg_report_remesh_json(const struct vg_remeshing *n,
@@ -248,10 +272,9 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds, "patches", patches_json(n, m),
     "below_20_degrees", bad_json(r, SIZE_MAX), "stretched", stretch_json(r),
-    "leading_edges", spacing_json(&n->spacing[VG_AT_LEAD]), "trailing_edges",
-    spacing_json(&n->spacing[VG_AT_TRAIL]), "roots",
-    spacing_json(&n->spacing[VG_AT_ROOT]), "tips",
-    spacing_json(&n->spacing[VG_AT_TIP]));
+    "leading_edges", spacing_json(n, VG_AT_LEAD), "trailing_edges",
+    spacing_json(n, VG_AT_TRAIL), "roots", spacing_json(n, VG_AT_ROOT), "tips",
+    spacing_json(n, VG_AT_TIP));
 }
 
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)

@@ -133,3 +133,23 @@ jq -e '.remesh | .roots, .tips |
   .reached_percent / .requested_percent | . > 0.7 and . < 1.15' \
   span/long.surface.json >ratios || fail "span: $(cat ratios)"
 ! grep -q false ratios || fail "span: $(cat ratios)"
+
+# Two rows with different requests at one place: each is reported by itself.
+cat >rows.deck <<'DECK'
+two rows
+
+remesh_surface
+yes
+
+surface
+patch  root  tip
+sides  0.02  0
+sides  0.01  0.02
+DECK
+vanguard surface -q long.obj --deck rows.deck --flow external --out rows
+exits 0
+says out "at roots, % of the semispan, row 1 of \`surface\`: requested 2, reached"
+says out "at roots, % of the semispan, row 2 of \`surface\`: requested 1, reached"
+says out "at tips, % of the semispan: requested 2, reached"
+jq -e '.remesh.roots.rows | map(.row) == [1, 2]' rows/long.surface.json \
+  >ratios || fail "rows: $(cat ratios)"
