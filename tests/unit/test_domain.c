@@ -490,7 +490,7 @@ static struct vg_mesh open_box(int n, unsigned missing, int is_turned)
   return m;
 }
 
-/* Two or three missing sides of a box have a common rim in as many planes of
+/* Two or three missing sides of a box have a common rim in that many planes of
  * any orientation. */
 static void closes_missing_sides_of_a_box(void **state)
 {
