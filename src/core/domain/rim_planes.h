@@ -42,7 +42,7 @@ int vg_rim_parts_are_flat(const struct vg_rim_loop *l,
 
 /** Find two or three such parts; two are preferred, and then those of which the
  * smallest is the longest. Parts begin at corners of the loop. Returns 0, with
- * *parts unchanged, if there are none, or if the loop has more than 512
+ * *parts unchanged, if the loop cannot be divided or has more than 512
  * corners. O(n^2 log n) at worst. */
 int vg_rim_parts_find(const struct vg_rim_loop *l, double flatness,
                       struct vg_rim_parts *parts);

@@ -12,6 +12,7 @@
 #include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
@@ -19,11 +20,16 @@
 #include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <NCollection_DataMap.hxx>
+#include <NCollection_Map.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_Edge.hxx>
+#include <StepShape_EdgeLoop.hxx>
+#include <StepShape_FaceBound.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_OrientedEdge.hxx>
 #include <TColStd_HSequenceOfExtendedString.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -507,98 +513,83 @@ bool transfer(Reader &reader, Handle(TDocStd_Document) & doc)
   return reader.Transfer(doc);
 }
 
-/* Faces whose orientation in their shell differs from the one in the file.
+/* --- faces on the wrong side of their border ----------------------------- */
+
+/* A closed curve divides a sphere or a torus into two parts that are both
+ * finite. Loops in STEP files may also run along the seam to a pole and back:
  *
- * A closed curve divides a sphere or a torus into two parts that are both
- * finite. Open CASCADE 7.6 takes the wrong one for some loops that run along a
- * seam to a pole. It then reverses the face, so that the shell is consistent
- * again, and the solid is valid but lacks, for example, the whole ball. */
-class Reversed
-{
-public:
-  explicit Reversed(const Handle(XSControl_WorkSession) & session)
-      : model_(session->Model())
-  {
-    Handle(Transfer_TransientProcess)
-      done = session->TransferReader()->TransientProcess();
+ *        pole o         Open CASCADE 7.6 drops these edges in some cases. It
+ *             | seam    can then take the other part of the sphere, reverse
+ *         .---o---.     it to match its neighbours, and call the result valid,
+ *        ( border  )    although the body lacks, for example, a whole ball.
+ *         '-------'
+ */
 
-    for (int k = 1; k <= model_->NbEntities(); k++) {
-      Handle(StepShape_FaceSurface)
-        face = Handle(StepShape_FaceSurface)::DownCast(model_->Value(k));
-      if (face.IsNull()) continue;
-      const TopoDS_Shape shape = TransferBRep::ShapeResult(done, face);
-      if (!shape.IsNull() && shape.ShapeType() == TopAbs_FACE)
-        face_.Bind(bare(shape), face);
+bool has_two_finite_sides(const TopoDS_Face &face)
+{
+  const GeomAbs_SurfaceType type = BRepAdaptor_Surface(face).GetType();
+
+  return type == GeomAbs_Sphere || type == GeomAbs_Torus;
+}
+
+/* Whether a loop of the entity runs along an edge in both directions. */
+bool has_seam(const Handle(StepShape_FaceSurface) & face)
+{
+  NCollection_Map<Handle(Standard_Transient)> seen;
+
+  for (int i = 1; i <= face->NbBounds(); i++) {
+    Handle(StepShape_EdgeLoop) loop = Handle(StepShape_EdgeLoop)::DownCast(
+      face->BoundsValue(i)->Bound());
+    if (loop.IsNull()) continue;
+    for (int k = 1; k <= loop->NbEdgeList(); k++)
+      if (!seen.Add(loop->EdgeListValue(k)->EdgeElement())) return true;
+  }
+  return false;
+}
+
+bool has_seam(const TopoDS_Face &face)
+{
+  for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next())
+    if (BRep_Tool::IsClosed(TopoDS::Edge(at.Current()), face)) return true;
+  return false;
+}
+
+[[noreturn]] void refuse_side(const TopoDS_Face &face, const char *label)
+{
+  Bnd_Box box;
+  double lo[3], hi[3];
+
+  BRepBndLib::Add(face, box);
+  box.Get(lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
+  throw Failure{
+    VG_ERR_GEOMETRY,
+    format("face %s is part of a sphere or torus around (%.6g, %.6g, %.6g), "
+           "and Open CASCADE drops the seam in its border, so that it may take "
+           "the wrong side of the border: divide this face into two in the CAD "
+           "system, or export the model as BREP or IGES",
+           label, (lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, (lo[2] + hi[2]) / 2)
+  };
+}
+
+void refuse_dropped_seams(const Handle(XSControl_WorkSession) & session)
+{
+  Handle(Interface_InterfaceModel) model = session->Model();
+  Handle(Transfer_TransientProcess)
+    done = session->TransferReader()->TransientProcess();
+
+  for (int k = 1; k <= model->NbEntities(); k++) {
+    Handle(StepShape_FaceSurface)
+      entity = Handle(StepShape_FaceSurface)::DownCast(model->Value(k));
+    if (entity.IsNull()) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(done, entity);
+    if (shape.IsNull()) continue;
+    for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
+      const TopoDS_Face face = TopoDS::Face(at.Current());
+
+      if (has_two_finite_sides(face) && !has_seam(face) && has_seam(entity))
+        refuse_side(face, model->StringLabel(entity)->ToCString());
     }
   }
-
-  /* A shell may be reversed as a whole, so that only the smaller part of its
-   * faces can be wrong. */
-  void refuse(const TopoDS_Shape &root) const
-  {
-    for (TopExp_Explorer at(root, TopAbs_SHELL); at.More(); at.Next()) {
-      const TopoDS_Shape shell = at.Current().Oriented(TopAbs_FORWARD);
-      size_t n[2] = { 0, 0 };
-
-      for (TopExp_Explorer f(shell, TopAbs_FACE); f.More(); f.Next())
-        if (face_.IsBound(bare(f.Current()))) n[is_reversed(f.Current())]++;
-      if (n[0] == n[1]) continue;
-      for (TopExp_Explorer f(shell, TopAbs_FACE); f.More(); f.Next())
-        if (face_.IsBound(bare(f.Current())) &&
-            is_reversed(f.Current()) == (n[1] < n[0]) &&
-            is_ambiguous(f.Current()))
-          fail(f.Current());
-    }
-  }
-
-private:
-  bool is_reversed(const TopoDS_Shape &face) const
-  {
-    return (face.Orientation() == TopAbs_FORWARD) !=
-           static_cast<bool>(face_.Find(bare(face))->SameSense());
-  }
-
-  static bool is_ambiguous(const TopoDS_Shape &face)
-  {
-    const GeomAbs_SurfaceType type = BRepAdaptor_Surface(TopoDS::Face(face))
-                                       .GetType();
-
-    return type == GeomAbs_Sphere || type == GeomAbs_Torus;
-  }
-
-  [[noreturn]] void fail(const TopoDS_Shape &face) const
-  {
-    Bnd_Box box;
-    double lo[3], hi[3];
-
-    BRepBndLib::Add(face, box);
-    box.Get(lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
-    throw Failure{
-      VG_ERR_GEOMETRY,
-      format("Open CASCADE takes the wrong side of the border of face %s, part "
-             "of a sphere or torus around (%.6g, %.6g, %.6g) mm, so that the "
-             "body would be another one: divide this face into two in the CAD "
-             "system, or export the model as BREP or IGES",
-             model_->StringLabel(face_.Find(bare(face)))->ToCString(),
-             (lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, (lo[2] + hi[2]) / 2)
-    };
-  }
-
-  Handle(Interface_InterfaceModel) model_;
-  NCollection_DataMap<TopoDS_Shape, Handle(StepShape_FaceSurface),
-                      TopTools_ShapeMapHasher>
-    face_;
-};
-
-void refuse_reversed(const Handle(TDocStd_Document) & doc,
-                     const Handle(XSControl_WorkSession) & session)
-{
-  const Reversed reversed(session);
-  TDF_LabelSequence list;
-
-  XCAFDoc_DocumentTool::ShapeTool(doc->Main())->GetFreeShapes(list);
-  for (const TDF_Label &label : list)
-    reversed.refuse(XCAFDoc_ShapeTool::GetShape(label));
 }
 
 /* --- formats ------------------------------------------------------------- */
@@ -627,7 +618,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
                      "export the assembly as a single file",
                      static_cast<int>(reader.ExternFiles().Size())));
   note_failures(reader.Reader().WS(), talk);
-  refuse_reversed(doc, reader.Reader().WS());
+  refuse_dropped_seams(reader.Reader().WS());
   collect(Words(doc, reader.Reader().WS()), model);
 }
 
