@@ -14,6 +14,7 @@
 #include "core/domain/farfield.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
+#include "core/surface/surface_check.h"
 #include "io/vgrid/vgrid.h"
 
 struct side {
@@ -443,6 +444,72 @@ static void closes_a_rim_in_three_planes(void **state)
   }
 }
 
+/* Sides of a box of n^2 squares each, without those named by the bits of
+ * `missing` (1: low x, 2: high x, ...), turned so that no side is normal to an
+ * axis if is_turned is set. */
+static struct vg_mesh open_box(int n, unsigned missing, int is_turned)
+{
+  static const double size[3] = { 2, 1, 0.7 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  size_t n_merged, n_dropped;
+
+  assert_true(vg_mesh_add_patch(&m, 1, "box") == 0);
+  m.point = malloc((size_t)(24 * n * n) * sizeof *m.point);
+  m.tri = malloc((size_t)(12 * n * n) * sizeof *m.tri);
+  m.tri_patch = calloc((size_t)(12 * n * n), sizeof *m.tri_patch);
+  assert_true(m.point && m.tri && m.tri_patch);
+  for (int side = 0; side < 6; side++)
+    for (int i = 0; i < n * n && !(missing >> side & 1); i++) {
+      const int axis = side / 2, is_high = side % 2;
+      const uint32_t first = (uint32_t)m.n_point;
+
+      for (int k = 0; k < 4; k++) {
+        double *x = m.point[m.n_point++], old[3];
+
+        x[axis] = is_high;
+        x[(axis + 1) % 3] = (double)(i / n + (k == 1 || k == 2)) / n;
+        x[(axis + 2) % 3] = (double)(i % n + (k > 1)) / n;
+        for (int d = 0; d < 3; d++) x[d] *= size[d];
+        if (!is_turned) continue;
+        memcpy(old, x, sizeof old);
+        x[0] = 0.8 * old[0] - 0.6 * old[1];
+        x[1] = 0.28 * (0.6 * old[0] + 0.8 * old[1]) - 0.96 * old[2];
+        x[2] = 0.96 * (0.6 * old[0] + 0.8 * old[1]) + 0.28 * old[2];
+      }
+      for (uint32_t k = 1; k < 3; k++) {
+        uint32_t *v = m.tri[m.n_tri++];
+
+        v[0] = first;
+        v[1] = first + (is_high ? k : k + 1);
+        v[2] = first + (is_high ? k + 1 : k);
+      }
+    }
+  assert_int_equal(vg_surface_weld(&m, 1e-9, &n_merged, &n_dropped, &err),
+                   VG_OK);
+  return m;
+}
+
+/* Two or three missing sides of a box have a common rim in that many planes of
+ * any orientation. */
+static void closes_missing_sides_of_a_box(void **state)
+{
+  static const unsigned missing[] = { 2 | 8, 1 | 32, 2 | 8 | 32, 1 | 4 | 16 };
+
+  (void)state;
+  for (int i = 0; i < 16; i++) {
+    const unsigned sides = missing[i % 4];
+    struct vg_mesh m = open_box(i / 8 ? 5 : 1, sides, i / 4 % 2);
+    size_t n;
+
+    assert_int_equal(close_holes(&m, -1, &n), VG_OK);
+    assert_int_equal(n, i % 4 < 2 ? 2 : 3);
+    check_closed(&m);
+    assert_true(fabs(fabs(volume(&m)) - 1.4) < 1e-9);
+    vg_mesh_release(&m);
+  }
+}
+
 static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
                          double dx)
 {
@@ -828,6 +895,7 @@ int main(void)
     cmocka_unit_test(closes_holes_but_not_half_bodies),
     cmocka_unit_test(closes_a_rim_in_two_planes),
     cmocka_unit_test(closes_a_rim_in_three_planes),
+    cmocka_unit_test(closes_missing_sides_of_a_box),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(adds_a_symmetry_plane_alone),
     cmocka_unit_test(refuses_half_bodies_it_cannot_complete),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: open edges are joined to rims. The rims of the cut of a half model
  * stay open; each other rim is closed by a patch of its own, or by two or three
- * if it lies in two or three planes. */
+ * if it lies in two or three planes (rim_planes.h). */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
+#include "core/domain/rim_planes.h"
 #include "core/domain/span.h"
 #include "core/domain/symmetry.h"
 #include "core/geometry/vector.h"
@@ -29,6 +30,8 @@ struct holes {
   struct vg_border open;
   uint32_t *next; /* [n_point] Next point along the rim, or UINT32_MAX. */
   uint32_t *loop; /* [n_point] Number of its rim. */
+  uint32_t *apex; /* [n_point] Third point of the triangle at the edge to the
+                     next point of the rim, or UINT32_MAX. */
   uint32_t n_loop;
   struct rim {
     uint32_t first;
@@ -311,17 +314,15 @@ static vg_status add_chord(struct holes *h, uint32_t a, uint32_t b, double step,
   return VG_OK;
 }
 
-/* Add the projection of a point onto the plane of a run. */
-static vg_status add_foot(struct holes *h, uint32_t of, const struct run *r,
-                          uint32_t *foot, struct vg_error *err)
+static vg_status add_point(struct holes *h, const double x[3], uint32_t *point,
+                           struct vg_error *err)
 {
   double(*list)[3] = vg_realloc(h->m.point, h->m.n_point + 1, sizeof *list);
 
   if (!list) return vg_fail_memory(err, "the cap of a rim");
   h->m.point = list;
-  *foot = (uint32_t)h->m.n_point++;
-  memcpy(list[*foot], list[of], sizeof *list);
-  list[*foot][r->axis] = r->at;
+  *point = (uint32_t)h->m.n_point++;
+  memcpy(list[*point], x, sizeof *list);
   return VG_OK;
 }
 
@@ -367,33 +368,9 @@ static double length_of(const struct holes *h, size_t n, const uint32_t *loop)
  *             \ . . . chord . . ./             the reversed chord
  *              \                /
  *               '--------------'              run in the plane of symmetry
- */
-static vg_status close_in_two(struct holes *h, size_t n, const uint32_t *loop,
-                              const struct run *r, struct chords *c,
-                              struct part *part,
-                              const struct vg_size_function *law, size_t *n_cap,
-                              struct vg_error *err)
-{
-  const size_t last = r->first + r->n - 1;
-  const double step = length_of(h, n, loop) / (double)n;
-  vg_status st;
-
-  VG_TRY(add_chord(h, loop[last % n], loop[r->first], step, &c->n[0],
-                   c->point[0], err));
-  append_rim(part, n, loop, r->first, last);
-  append_chord(part, c, 0, 0);
-  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
-  part->n = 0;
-  append_rim(part, n, loop, last, r->first + n);
-  append_chord(part, c, 0, 1);
-  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
-done:
-  return st;
-}
-
-/* A rim in three planes, such as that of half a hull without deck and transom,
- * also has a corner between the two parts outside the run. Chords meet in the
- * projection of this corner onto the plane of the run:
+ *
+ * A rim in three planes, such as that of half a hull without deck and transom,
+ * is divided by chords that meet in the foot:
  *
  *      first o====== deck =====o corner
  *            |                /|
@@ -402,38 +379,41 @@ done:
  *            |  `--- 1 ---o-0--o last
  *            '--- run ---------'
  */
-static vg_status close_in_three(struct holes *h, size_t n, const uint32_t *loop,
-                                const struct run *r, size_t corner,
-                                struct chords *c, struct part *part,
+static vg_status close_in_parts(struct holes *h, size_t n, const uint32_t *loop,
+                                const struct vg_rim_parts *p, struct chords *c,
+                                struct part *part,
                                 const struct vg_size_function *law,
                                 size_t *n_cap, struct vg_error *err)
 {
-  const size_t last = r->first + r->n - 1;
   const double step = length_of(h, n, loop) / (double)n;
   uint32_t foot = 0;
-  vg_status st;
+  vg_status st = VG_OK;
 
-  VG_TRY(add_foot(h, loop[corner % n], r, &foot, err));
-  VG_TRY(add_chord(h, loop[last % n], foot, step, &c->n[0], c->point[0], err));
-  c->point[0][c->n[0]++] = foot;
-  VG_TRY(add_chord(h, foot, loop[r->first], step, &c->n[1], c->point[1], err));
-  VG_TRY(
-    add_chord(h, foot, loop[corner % n], step, &c->n[2], c->point[2], err));
-  append_rim(part, n, loop, r->first, last);
-  append_chord(part, c, 0, 0);
-  append_chord(part, c, 1, 0);
-  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
-  part->n = 0;
-  append_rim(part, n, loop, last, corner);
-  append_chord(part, c, 2, 1);
-  append_chord(part, c, 0, 1);
-  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
-  part->n = 0;
-  append_rim(part, n, loop, corner, r->first + n);
-  append_chord(part, c, 1, 1);
-  part->point[part->n++] = foot;
-  append_chord(part, c, 2, 0);
-  VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+  if (p->n_part == 2)
+    VG_TRY(add_chord(h, loop[p->at[1] % n], loop[p->at[0] % n], step, &c->n[0],
+                     c->point[0], err));
+  else {
+    VG_TRY(add_point(h, p->foot, &foot, err));
+    VG_TRY(
+      add_chord(h, loop[p->at[1] % n], foot, step, &c->n[1], c->point[1], err));
+    VG_TRY(
+      add_chord(h, foot, loop[p->at[0] % n], step, &c->n[0], c->point[0], err));
+    VG_TRY(
+      add_chord(h, foot, loop[p->at[2] % n], step, &c->n[2], c->point[2], err));
+  }
+  for (int i = 0; i < p->n_part; i++) {
+    const int j = (i + 1) % 3;
+
+    part->n = 0;
+    append_rim(part, n, loop, p->at[i], p->at[i + 1]);
+    if (p->n_part == 2) append_chord(part, c, 0, i);
+    else { /* chord 1 leads to the foot, the others away from it */
+      append_chord(part, c, j, j != 1);
+      part->point[part->n++] = foot;
+      append_chord(part, c, i, i == 1);
+    }
+    VG_TRY(close_loop(h, part->n, part->point, law, n_cap, err));
+  }
 done:
   return st;
 }
@@ -459,12 +439,12 @@ static size_t find_corner(const struct holes *h, size_t n, const uint32_t *loop,
   return at;
 }
 
-static vg_status close_in_parts(struct holes *h, size_t n, const uint32_t *loop,
-                                const struct run *r,
-                                const struct vg_size_function *law,
-                                size_t *n_cap, struct vg_error *err)
+/* Divide and close. */
+static vg_status close_divided(struct holes *h, size_t n, const uint32_t *loop,
+                               const struct vg_rim_parts *p,
+                               const struct vg_size_function *law,
+                               size_t *n_cap, struct vg_error *err)
 {
-  const size_t corner = find_corner(h, n, loop, r);
   uint32_t *memory = vg_alloc(n + 2 * VG_SPAN_MOST + 2, sizeof *memory);
   struct part part = { 0, memory };
   struct chords c = { .n = { 0 } };
@@ -473,9 +453,7 @@ static vg_status close_in_parts(struct holes *h, size_t n, const uint32_t *loop,
   if (!memory) VG_TRY(vg_fail_memory(err, "the cap of a rim"));
   for (size_t i = 0; i < 3; i++)
     c.point[i] = memory + n + VG_SPAN_MOST + 2 + i * (VG_SPAN_MOST / 3);
-  if (corner)
-    VG_TRY(close_in_three(h, n, loop, r, corner, &c, &part, law, n_cap, err));
-  else VG_TRY(close_in_two(h, n, loop, r, &c, &part, law, n_cap, err));
+  st = close_in_parts(h, n, loop, p, &c, &part, law, n_cap, err);
 done:
   free(memory);
   return st;
@@ -497,12 +475,51 @@ static int is_part(const struct holes *h, size_t n, const uint32_t *loop,
   return run > PART * all && run < (1 - PART) * all;
 }
 
+/* Parts of the rim of which one lies in a plane normal to an axis at an end of
+ * the body. The others may be curved, as the deck of a hull is; three of them
+ * meet in the projection of a corner onto the plane. */
+static int find_parts_at_end(const struct holes *h, size_t n,
+                             const uint32_t *loop, struct vg_rim_parts *p)
+{
+  const struct run r = find_run(h, n, loop);
+  size_t corner;
+
+  if (r.n <= 2 || r.n >= n || !is_part(h, n, loop, r.first, r.n)) return 0;
+  corner = find_corner(h, n, loop, &r);
+  p->n_part = corner ? 3 : 2;
+  p->at[0] = r.first;
+  p->at[1] = r.first + r.n - 1;
+  p->at[2] = corner ? corner : r.first + n;
+  p->at[3] = r.first + n;
+  if (!corner) return 1;
+  memcpy(p->foot, h->m.point[loop[corner % n]], sizeof p->foot);
+  p->foot[r.axis] = r.at;
+  return 1;
+}
+
+/* Set *p to the parts of the rim; n_part = 1 if it is not divided. Parts in
+ * planes of any orientation replace those at an end of the body only if the
+ * latter are not plane. */
+static void find_parts(const struct holes *h, size_t n, const uint32_t *loop,
+                       struct vg_rim_parts *p)
+{
+  const struct vg_rim_loop l = { n, (const double(*)[3])h->m.point, loop,
+                                 h->apex };
+
+  p->n_part = 1;
+  if (is_flat(h, n, loop, ONE_PLANE)) return;
+  if (find_parts_at_end(h, n, loop, p) &&
+      vg_rim_parts_are_flat(&l, p, ONE_PLANE))
+    return;
+  vg_rim_parts_find(&l, ONE_PLANE, p);
+}
+
 static vg_status close_rim(struct holes *h, uint32_t k,
                            const struct vg_size_function *law, size_t *n_cap,
                            struct vg_error *err)
 {
   uint32_t p = h->rim[k].first, *loop = NULL;
-  struct run run = { 0, 0, 0, 0 };
+  struct vg_rim_parts parts = { 0 };
   size_t n = 0, cap = 0;
   vg_status st = VG_OK;
 
@@ -512,13 +529,26 @@ static vg_status close_rim(struct holes *h, uint32_t k,
     loop[n++] = p;
     p = h->next[p];
   } while (p != h->rim[k].first);
-  if (!is_flat(h, n, loop, ONE_PLANE)) run = find_run(h, n, loop);
-  if (run.n > 2 && run.n < n && is_part(h, n, loop, run.first, run.n))
-    st = close_in_parts(h, n, loop, &run, law, n_cap, err);
-  else st = close_loop(h, n, loop, law, n_cap, err);
+  find_parts(h, n, loop, &parts);
+  st = parts.n_part > 1 ? close_divided(h, n, loop, &parts, law, n_cap, err)
+                        : close_loop(h, n, loop, law, n_cap, err);
 done:
   free(loop);
   return st;
+}
+
+/* Third points of the triangles at the rims. */
+static void find_apexes(struct holes *h)
+{
+  const size_t n_given = h->m.n_point;
+
+  for (size_t i = 0; i < n_given; i++) h->apex[i] = UINT32_MAX;
+  for (size_t t = 0; t < h->m.n_tri; t++)
+    for (int k = 0; k < 3; k++) {
+      const uint32_t *v = h->m.tri[t], a = v[(k + 1) % 3];
+
+      if (h->next[a] == v[k]) h->apex[a] = v[(k + 2) % 3];
+    }
 }
 
 static vg_status prepare(struct holes *h, struct vg_error *err)
@@ -533,10 +563,12 @@ static vg_status prepare(struct holes *h, struct vg_error *err)
   VG_TRY(vg_open_edges(&h->m, &h->open, err));
   h->next = vg_alloc(h->m.n_point, sizeof *h->next);
   h->loop = vg_alloc(h->m.n_point, sizeof *h->loop);
+  h->apex = vg_alloc(h->m.n_point, sizeof *h->apex);
   h->rim = vg_alloc(h->open.n, sizeof *h->rim);
-  if (!h->next || !h->loop || !h->rim)
+  if (!h->next || !h->loop || !h->apex || !h->rim)
     return vg_fail_memory(err, "the holes of the surface");
   VG_TRY(follow_rims(h, err));
+  find_apexes(h);
 done:
   return st;
 }
@@ -547,6 +579,7 @@ static void release(struct holes *h)
   vg_border_release(&h->open);
   free(h->next);
   free(h->loop);
+  free(h->apex);
   free(h->rim);
 }
 

@@ -8,18 +8,28 @@
 
 #include <sys/resource.h>
 
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <NCollection_DataMap.hxx>
+#include <NCollection_Map.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_Edge.hxx>
+#include <StepShape_EdgeLoop.hxx>
+#include <StepShape_FaceBound.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <StepShape_OrientedEdge.hxx>
 #include <TColStd_HSequenceOfExtendedString.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -503,6 +513,85 @@ bool transfer(Reader &reader, Handle(TDocStd_Document) & doc)
   return reader.Transfer(doc);
 }
 
+/* --- faces on the wrong side of their border ----------------------------- */
+
+/* A closed curve divides a sphere or a torus into two parts that are both
+ * finite. Loops in STEP files may also run along the seam to a pole and back:
+ *
+ *        pole o         Open CASCADE 7.6 drops these edges in some cases. It
+ *             | seam    can then take the other part of the sphere, reverse
+ *         .---o---.     it to match its neighbours, and call the result valid,
+ *        ( border  )    although the body lacks, for example, a whole ball.
+ *         '-------'
+ */
+
+bool has_two_finite_sides(const TopoDS_Face &face)
+{
+  const GeomAbs_SurfaceType type = BRepAdaptor_Surface(face).GetType();
+
+  return type == GeomAbs_Sphere || type == GeomAbs_Torus;
+}
+
+/* Whether a loop of the entity runs along an edge in both directions. */
+bool has_seam(const Handle(StepShape_FaceSurface) & face)
+{
+  NCollection_Map<Handle(Standard_Transient)> seen;
+
+  for (int i = 1; i <= face->NbBounds(); i++) {
+    Handle(StepShape_EdgeLoop) loop = Handle(StepShape_EdgeLoop)::DownCast(
+      face->BoundsValue(i)->Bound());
+    if (loop.IsNull()) continue;
+    for (int k = 1; k <= loop->NbEdgeList(); k++)
+      if (!seen.Add(loop->EdgeListValue(k)->EdgeElement())) return true;
+  }
+  return false;
+}
+
+bool has_seam(const TopoDS_Face &face)
+{
+  for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next())
+    if (BRep_Tool::IsClosed(TopoDS::Edge(at.Current()), face)) return true;
+  return false;
+}
+
+[[noreturn]] void refuse_side(const TopoDS_Face &face, const char *label)
+{
+  Bnd_Box box;
+  double lo[3], hi[3];
+
+  BRepBndLib::Add(face, box);
+  box.Get(lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
+  throw Failure{
+    VG_ERR_GEOMETRY,
+    format("face %s is part of a sphere or torus around (%.6g, %.6g, %.6g), "
+           "and Open CASCADE drops the seam in its border, so that it may take "
+           "the wrong side of the border: divide this face into two in the CAD "
+           "system, or export the model as BREP or IGES",
+           label, (lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, (lo[2] + hi[2]) / 2)
+  };
+}
+
+void refuse_dropped_seams(const Handle(XSControl_WorkSession) & session)
+{
+  Handle(Interface_InterfaceModel) model = session->Model();
+  Handle(Transfer_TransientProcess)
+    done = session->TransferReader()->TransientProcess();
+
+  for (int k = 1; k <= model->NbEntities(); k++) {
+    Handle(StepShape_FaceSurface)
+      entity = Handle(StepShape_FaceSurface)::DownCast(model->Value(k));
+    if (entity.IsNull()) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(done, entity);
+    if (shape.IsNull()) continue;
+    for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
+      const TopoDS_Face face = TopoDS::Face(at.Current());
+
+      if (has_two_finite_sides(face) && !has_seam(face) && has_seam(entity))
+        refuse_side(face, model->StringLabel(entity)->ToCString());
+    }
+  }
+}
+
 /* --- formats ------------------------------------------------------------- */
 
 void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
@@ -529,6 +618,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
                      "export the assembly as a single file",
                      static_cast<int>(reader.ExternFiles().Size())));
   note_failures(reader.Reader().WS(), talk);
+  refuse_dropped_seams(reader.Reader().WS());
   collect(Words(doc, reader.Reader().WS()), model);
 }
 

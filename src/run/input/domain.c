@@ -85,7 +85,13 @@ static void note_half(struct vg_boundary *b)
             "it was moved into this plane",
             b->flow.root_off, "xyz"[b->flow.axis], b -> flow.at);
   if (half == VG_HALF_AUTO || half == VG_HALF_NO || b->flow.axis >= 0) return;
-  if (b->check.is_closed)
+  if (b->check.is_closed && half == VG_HALF_YES &&
+      b->read->settings.close_holes && b->surface.n_patch > b->n_given_patch)
+    vg_note(b->notes,
+            "half yes has no effect, since close_holes closed all rims; --half "
+            "x, y or z removes the cap in the plane of symmetry again and "
+            "keeps the others");
+  else if (b->check.is_closed)
     vg_note(b->notes, "setting that has no effect because the surface is "
                       "closed: half");
 }
