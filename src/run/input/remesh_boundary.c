@@ -412,9 +412,9 @@ static vg_status find_pairs(const struct vg_boundary *b,
 {
   const struct vg_stop stop = { vg_display_stop, show };
   const struct vg_settings *s = &b->read->settings;
+  const double chord = vg_read_is_cad(b->read) ? vg_options_cad(s, 1).chord : 0;
 
-  return vg_pairs_locate(s, &b->surface, vg_options_remesh(s).accuracy,
-                       b->threads, &stop, pairs, err);
+  return vg_pairs_locate(s, &b->surface, chord, b->threads, &stop, pairs, err);
 }
 
 /* The report by the new triangles: those of the image have the values of their
