@@ -22,7 +22,7 @@ void vg_periodic_copied_release(struct vg_periodic_copied *c)
 struct copy {
   const struct vg_mesh *m;
   const struct vg_periodic *p;
-  struct vg_strip strip;
+  struct vg_border_strip strip;
   uint32_t *image; /* [m->n_point] number of the image of each point */
   struct vg_periodic_copied *out;
 };
@@ -164,7 +164,7 @@ static void add_face(struct lists *l, const uint32_t v[3], uint32_t patch,
 }
 
 /* Drops points without triangles. */
-static void number(struct lists *l, const struct vg_strip *s)
+static void number(struct lists *l, const struct vg_border_strip *s)
 {
   for (size_t i = 0; i < s->n_point; i++) l->number[i] = NONE;
   for (size_t t = 0; t < l->n_tri; t++)
@@ -181,7 +181,7 @@ static void number(struct lists *l, const struct vg_strip *s)
 static vg_status compose(struct copy *c, struct vg_mesh *m, uint32_t patch,
                          uint32_t image, struct vg_error *err)
 {
-  const struct vg_strip *s = &c->strip;
+  const struct vg_border_strip *s = &c->strip;
   const size_t most = s->n_tri + m->n_tri;
   struct lists l = { .point = vg_alloc(s->n_point, sizeof *l.point),
                      .tri = vg_alloc(most, sizeof *l.tri),

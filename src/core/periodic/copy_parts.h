@@ -52,7 +52,7 @@ vg_status vg_borders_divide(struct vg_borders *b, struct vg_border_pieces *out,
 void vg_borders_release(struct vg_borders *b);
 
 /* A triangulation whose triangles are changed one by one. */
-struct vg_strip {
+struct vg_border_strip {
   size_t n_point, n_tri, cap_point, cap_tri, cap_next;
   double (*point)[3];
   uint32_t (*tri)[3], *patch, *origin;
@@ -62,18 +62,19 @@ struct vg_strip {
 };
 
 /** Takes all triangles but those of the patch with index `without`. */
-vg_status vg_strip_start(struct vg_strip *s, const struct vg_mesh *m,
+vg_status vg_strip_start(struct vg_border_strip *s, const struct vg_mesh *m,
                          uint32_t without, struct vg_error *err);
 
 /** Puts a new point x into the edge from u to v; without a triangle there,
  * only the point is added. Its number is s->n_point - 1. */
-vg_status vg_strip_insert(struct vg_strip *s, uint32_t u, uint32_t v,
+vg_status vg_strip_insert(struct vg_border_strip *s, uint32_t u, uint32_t v,
                           const double x[3], struct vg_error *err);
 
 /** Removes the point b of the border between l and r. Returns 1, or 0 if no
  * triangles without it are found. */
-int vg_strip_remove(struct vg_strip *s, uint32_t l, uint32_t b, uint32_t r);
+int vg_strip_remove(struct vg_border_strip *s, uint32_t l, uint32_t b,
+                    uint32_t r);
 
-void vg_strip_release(struct vg_strip *s);
+void vg_strip_release(struct vg_border_strip *s);
 
 #endif

@@ -329,6 +329,11 @@ static void note_faults(struct vg_boundary *b)
             "%zu triangles were kept unchanged because new triangles would "
             "intersect there; the first are near (%.6g, %.6g, %.6g)",
             r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
+  if (vg_read_is_cad(b->read) && !b->model.cad)
+    vg_note(b->notes,
+            "points are not projected onto the CAD model, since the surface "
+            "has inner surfaces: it deviates from the model by the chord error "
+            "of the triangulation in addition (cad_chord)");
 }
 
 static void note_remeshing(struct vg_boundary *b)
@@ -527,11 +532,6 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   areas(&b->surface, 1, r->area);
   VG_TRY(vg_surface_spacing_measure(b, r->spacing, err));
   note_faults(b);
-  if (vg_read_is_cad(b->read) && !b->model.cad)
-    vg_note(b->notes,
-            "points are not projected onto the CAD model, since the surface "
-            "has inner surfaces: it deviates from the model by the chord error "
-            "of the triangulation in addition (cad_chord)");
   note_remeshing(b);
   note_areas(b);
   note_size(b);

@@ -15,7 +15,7 @@
 
 /* --- triangles at points -------------------------------------------------- */
 
-static void link(struct vg_strip *s, uint32_t t)
+static void link(struct vg_border_strip *s, uint32_t t)
 {
   for (uint32_t k = 0; k < 3; k++) {
     s->next[3 * t + k] = s->head[s->tri[t][k]];
@@ -23,7 +23,7 @@ static void link(struct vg_strip *s, uint32_t t)
   }
 }
 
-static void unlink_triangle(struct vg_strip *s, uint32_t t)
+static void unlink_triangle(struct vg_border_strip *s, uint32_t t)
 {
   for (uint32_t k = 0; k < 3; k++) {
     uint32_t *at = &s->head[s->tri[t][k]];
@@ -34,7 +34,7 @@ static void unlink_triangle(struct vg_strip *s, uint32_t t)
 }
 
 /* The triangle with the half-edge from u to v; NONE: there is none. */
-static uint32_t find(const struct vg_strip *s, uint32_t u, uint32_t v)
+static uint32_t find(const struct vg_border_strip *s, uint32_t u, uint32_t v)
 {
   for (uint32_t c = s->head[u]; c != NONE; c = s->next[c])
     if (s->tri[c / 3][(c + 1) % 3] == v && c % 3 != 2) return c / 3;
@@ -49,7 +49,7 @@ static uint32_t third(const uint32_t t[3], uint32_t u, uint32_t v)
   return NONE;
 }
 
-static vg_status add_triangle(struct vg_strip *s, const uint32_t v[3],
+static vg_status add_triangle(struct vg_border_strip *s, const uint32_t v[3],
                               uint32_t like, struct vg_error *err)
 {
   size_t cap = s->cap_tri;
@@ -81,7 +81,7 @@ static vg_status add_triangle(struct vg_strip *s, const uint32_t v[3],
   return VG_OK;
 }
 
-static vg_status add_point(struct vg_strip *s, const double x[3],
+static vg_status add_point(struct vg_border_strip *s, const double x[3],
                            struct vg_error *err)
 {
   if (vg_reserve(&s->point, &s->cap_point, s->n_point + 1, sizeof *s->point) <
@@ -93,7 +93,7 @@ static vg_status add_point(struct vg_strip *s, const double x[3],
   return VG_OK;
 }
 
-vg_status vg_strip_start(struct vg_strip *s, const struct vg_mesh *m,
+vg_status vg_strip_start(struct vg_border_strip *s, const struct vg_mesh *m,
                          uint32_t without, struct vg_error *err)
 {
   memset(s, 0, sizeof *s);
@@ -121,7 +121,7 @@ vg_status vg_strip_start(struct vg_strip *s, const struct vg_mesh *m,
   return VG_OK;
 }
 
-void vg_strip_release(struct vg_strip *s)
+void vg_strip_release(struct vg_border_strip *s)
 {
   free(s->point);
   free(s->head);
@@ -135,7 +135,7 @@ void vg_strip_release(struct vg_strip *s)
 
 /* --- insertion ------------------------------------------------------------ */
 
-vg_status vg_strip_insert(struct vg_strip *s, uint32_t u, uint32_t v,
+vg_status vg_strip_insert(struct vg_border_strip *s, uint32_t u, uint32_t v,
                           const double x[3], struct vg_error *err)
 {
   const uint32_t t = find(s, u, v), p = (uint32_t)s->n_point;
@@ -169,8 +169,8 @@ static double det2(const double a[2], const double b[2], const double c[2])
 }
 
 /* The triangles at b, from the one at l to the one at r. */
-static int gather(const struct vg_strip *s, uint32_t l, uint32_t b, uint32_t r,
-                  struct ring *q)
+static int gather(const struct vg_border_strip *s, uint32_t l, uint32_t b,
+                  uint32_t r, struct ring *q)
 {
   uint32_t x = l, reversed[MOST_RING];
 
@@ -189,7 +189,7 @@ static int gather(const struct vg_strip *s, uint32_t l, uint32_t b, uint32_t r,
   return q->n > 2;
 }
 
-static void flatten(const struct vg_strip *s, struct ring *q)
+static void flatten(const struct vg_border_strip *s, struct ring *q)
 {
   double n[3] = { 0 }, u[3], v[3], c[3], d[3];
 
@@ -261,7 +261,8 @@ static int cut_ears(struct ring *q, uint32_t (*out)[3])
   return 1;
 }
 
-int vg_strip_remove(struct vg_strip *s, uint32_t l, uint32_t b, uint32_t r)
+int vg_strip_remove(struct vg_border_strip *s, uint32_t l, uint32_t b,
+                    uint32_t r)
 {
   uint32_t out[MOST_RING][3];
   struct ring q;
