@@ -179,6 +179,17 @@ static vg_status given_areas(struct vg_boundary *b, const struct vg_mesh *given,
   return VG_OK;
 }
 
+static vg_status start_areas(struct vg_boundary *b, const struct vg_mesh *given,
+                             struct vg_error *err)
+{
+  struct vg_remeshing *r = &b->remeshing;
+
+  r->n_patch = given->n_patch;
+  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
+  if (!r->area) return vg_fail_memory(err, "the patches");
+  return given_areas(b, given, r->area, err);
+}
+
 struct remesh_request {
   const uint8_t *hard; /* [n_patch] May be NULL. */
   const struct vg_surface_sizes *sizes;
@@ -505,10 +516,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                    "patch, or set remesh_surface to no");
   vg_display_update(show, "surface remeshing", b->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
-  r->n_patch = given.n_patch;
-  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
-  if (!r->area) VG_TRY(vg_fail_memory(err, "the patches"));
-  VG_TRY(given_areas(b, &given, r->area, err));
+  VG_TRY(start_areas(b, &given, err));
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(find_pairs(b, show, &pairs, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));

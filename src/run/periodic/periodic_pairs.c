@@ -405,9 +405,8 @@ done:
 }
 
 vg_status vg_pairs_locate(const struct vg_settings *s, const struct vg_mesh *m,
-                        double chord, int threads,
-                        const struct vg_stop *stop, struct vg_pairs *list,
-                        struct vg_error *err)
+                          double chord, int threads, const struct vg_stop *stop,
+                          struct vg_pairs *list, struct vg_error *err)
 {
   const size_t n = s->n_periodic;
   vg_status st = VG_OK;
@@ -422,9 +421,8 @@ vg_status vg_pairs_locate(const struct vg_settings *s, const struct vg_mesh *m,
 
     VG_TRY(
       find_pair(list, m, &s->periodic_row[i], i + 1, 1, p, &is_given, err));
-    VG_TRY(compare(m, p,
-                   (2 * chord + TOLERANCE) * vg_periodic_extent(m, p), threads,
-                   stop, err));
+    VG_TRY(compare(m, p, (2 * chord + TOLERANCE) * vg_periodic_extent(m, p),
+                   threads, stop, err));
     list->n++;
   }
 done:

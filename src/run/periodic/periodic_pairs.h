@@ -43,9 +43,8 @@ vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
  * VG_ERR_INPUT as vg_pairs_settle. VG_ERR_GEOMETRY for patches whose shapes
  * differ: the message has the largest distance and its place. */
 vg_status vg_pairs_locate(const struct vg_settings *s, const struct vg_mesh *m,
-                        double chord, int threads,
-                        const struct vg_stop *stop, struct vg_pairs *list,
-                        struct vg_error *err);
+                          double chord, int threads, const struct vg_stop *stop,
+                          struct vg_pairs *list, struct vg_error *err);
 
 /** Replaces the triangles of the second patch of each pair by the images of
  * those of the first one (core/periodic/copy.h).
