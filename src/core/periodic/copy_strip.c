@@ -33,7 +33,7 @@ static void unlink_triangle(struct vg_border_strip *s, uint32_t t)
   }
 }
 
-/* The triangle with the half-edge from u to v; NONE: there is none. */
+/* The triangle with the half-edge from u to v; NONE: no triangle has it. */
 static uint32_t find(const struct vg_border_strip *s, uint32_t u, uint32_t v)
 {
   for (uint32_t c = s->head[u]; c != NONE; c = s->next[c])
