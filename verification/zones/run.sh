@@ -8,6 +8,9 @@
 #   rotor  `vanguard demo rotor` in simpleFoam, with the MRFProperties of
 #          docs/guide/zones.md: the initial residuals fall below 1e-3, and the
 #          blades turn
+#   ami    the same mesh with a doubled interface (cyclicAMI) on which the zone
+#          turns, in pimpleFoam: the sums of the weights of its faces are within
+#          5 % of 1, and all but 0.1 % of the mass passes
 #   fins   `vanguard demo fins` in splitMeshRegions, simpleFoam and
 #          chtMultiRegionFoam: the 100 W of the solid arrive in the flow and in
 #          the outflow
@@ -36,11 +39,11 @@ while [ $# -gt 0 ]; do
       declare "${1#--}=$2"
       shift 2 ;;
     -h|--help) usage; exit 0 ;;
-    rotor|fins|exchanger|baffle|passage|wake) break ;;
+    rotor|ami|fins|exchanger|baffle|passage|wake) break ;;
     *) usage >&2; exit 2 ;;
   esac
 done
-[ $# -gt 0 ] || set -- rotor fins exchanger baffle passage wake
+[ $# -gt 0 ] || set -- rotor ami fins exchanger baffle passage wake
 
 if ! command -v checkMesh >/dev/null; then
   echo "SKIP: no OpenFOAM (checkMesh is not in PATH)"
@@ -99,6 +102,8 @@ sound() {
 
 # shellcheck source=verification/zones/rotor.bash
 . "$here/rotor.bash"
+# shellcheck source=verification/zones/ami.bash
+. "$here/ami.bash"
 # shellcheck source=verification/zones/fins.bash
 . "$here/fins.bash"
 # shellcheck source=verification/zones/exchanger.bash

@@ -41,6 +41,9 @@ double vg_periodic_degrees(const struct vg_periodic *p);
 /* S103: largest distance between a point and its image on a settled surface and
  * in a finished mesh, as a share of the extent of the pair. */
 #define VG_PERIODIC_EXACT 1e-10
+/* S120: largest distance of corners of triangulated CAD faces under a transform
+ * from their areas, as a share of the extent of the pair. */
+#define VG_PERIODIC_ROUGH 2e-3
 
 /** The reverse: from the image to the patch. */
 struct vg_periodic vg_periodic_reverse(const struct vg_periodic *p);
@@ -106,6 +109,13 @@ void vg_periodic_match_release(struct vg_periodic_match *match);
 vg_status vg_periodic_refine(const struct vg_mesh *m, struct vg_periodic *p,
                              const struct vg_periodic_match *match,
                              struct vg_error *err);
+
+/** Replaces axis, centre and angle of a rotation by those of the rigid motion
+ * that takes the points nearest to their partners, in the sum of squared
+ * distances (Horn, J. Opt. Soc. Am. A 4, 1987). Nothing changes if the points
+ * are on one line. */
+void vg_periodic_refine_turn(const struct vg_mesh *m, struct vg_periodic *p,
+                             const struct vg_periodic_match *match);
 
 /** Moves the points of the image patch to their places, those on the axis
  * excepted. Sets p->distance and p->n_face. Returns the number of points that

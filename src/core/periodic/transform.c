@@ -186,6 +186,24 @@ static void round_off(double v[3], double scale)
     if (fabs(v[k]) < VG_PERIODIC_ZERO * scale) v[k] = 0;
 }
 
+/* Centre of a rotation, by its axis and angle, that takes the point `from` to
+ * the point `to`, except for their distance along the axis. It is above the
+ * middle of the way: sin / (1 - cos) is the cotangent of half the angle. */
+static void set_centre(struct vg_periodic *p, const double from[3],
+                       const double to[3], double extent)
+{
+  double way[3], turned[3], along;
+
+  vg_sub(to, from, way);
+  vg_cross(p->axis, way, turned);
+  for (int k = 0; k < 3; k++)
+    p->centre[k] = (from[k] + to[k]) / 2 +
+                   turned[k] * p->sine / (2 * (1 - p->cosine));
+  along = vg_dot(p->centre, p->axis);
+  for (int k = 0; k < 3; k++) p->centre[k] -= along * p->axis[k];
+  round_off(p->centre, extent);
+}
+
 /* The rotation leaves components along the axis unchanged, and takes the mean
  * normal of the first patch to the reverse of the other. Both the sum of the
  * normals and the way between the centroids are therefore normal to the
@@ -193,13 +211,12 @@ static void round_off(double v[3], double scale)
 static int find_rotation(const struct moments q[2], double extent,
                          struct vg_periodic *p)
 {
-  double sum[3], way[3], from[3], to[3], turned[3], middle[3], along, l;
+  double sum[3], way[3], from[3], to[3], turned[3], along, l;
 
   for (int k = 0; k < 3; k++) {
     sum[k] = q[0].normal[k] + q[1].normal[k];
     from[k] = q[0].normal[k];
     to[k] = -q[1].normal[k];
-    middle[k] = (q[0].middle[k] + q[1].middle[k]) / 2;
   }
   vg_sub(q[1].middle, q[0].middle, way);
   vg_cross(sum, way, p->axis);
@@ -221,14 +238,7 @@ static int find_rotation(const struct moments q[2], double extent,
   p->cosine /= l;
   p->n = 0;
   snap(p);
-  /* The centre is above the middle of the way: sin / (1 - cos) is the cotangent
-   * of half the angle. */
-  vg_cross(p->axis, way, turned);
-  for (int k = 0; k < 3; k++)
-    p->centre[k] = middle[k] + turned[k] * p->sine / (2 * (1 - p->cosine));
-  along = vg_dot(p->centre, p->axis);
-  for (int k = 0; k < 3; k++) p->centre[k] -= along * p->axis[k];
-  round_off(p->centre, extent);
+  set_centre(p, q[0].middle, q[1].middle, extent);
   p->is_rotation = 1;
   return 1;
 }
@@ -247,4 +257,143 @@ int vg_periodic_find(const struct vg_mesh *m, struct vg_periodic *p)
   round_off(p->shift, vg_norm(p->shift));
   p->is_rotation = 0;
   return vg_norm(p->shift) > 0;
+}
+
+/* --- rotations from points ------------------------------------------------ */
+
+#define SWEEPS 60 /* of Jacobi's method; a few are enough */
+#define ON_A_LINE                                                              \
+  1e-3 /* S120: width of the points, relative to their length                  \
+        */
+
+/* One rotation of Jacobi's method, which makes a[i][j] zero. */
+static void rotate(double a[4][4], double v[4][4], int i, int j)
+{
+  double theta, t, c, s;
+
+  if (a[i][j] == 0) return;
+  theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
+  t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+  c = 1 / sqrt(t * t + 1);
+  s = t * c;
+  for (int k = 0; k < 4; k++) {
+    const double x = a[k][i], y = a[k][j];
+
+    a[k][i] = c * x - s * y;
+    a[k][j] = s * x + c * y;
+  }
+  for (int k = 0; k < 4; k++) {
+    const double x = a[i][k], y = a[j][k], w = v[k][i], z = v[k][j];
+
+    a[i][k] = c * x - s * y;
+    a[j][k] = s * x + c * y;
+    v[k][i] = c * w - s * z;
+    v[k][j] = s * w + c * z;
+  }
+}
+
+/* Unit eigenvector of the greatest eigenvalue of a symmetric matrix. */
+static void greatest(double a[4][4], double q[4])
+{
+  double v[4][4] = { { 1 }, { 0, 1 }, { 0, 0, 1 }, { 0, 0, 0, 1 } };
+  int at = 0;
+
+  for (int n = 0; n < SWEEPS; n++)
+    for (int i = 0; i < 3; i++)
+      for (int j = i + 1; j < 4; j++) rotate(a, v, i, j);
+  for (int i = 1; i < 4; i++)
+    if (a[i][i] > a[at][at]) at = i;
+  for (int k = 0; k < 4; k++) q[k] = v[k][at];
+}
+
+/* Horn's matrix from the sums h[i][j] of the products of coordinates i of the
+ * points and j of their partners. */
+static void horn(double h[3][3], double a[4][4])
+{
+  a[0][0] = h[0][0] + h[1][1] + h[2][2];
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+
+    a[0][i + 1] = a[i + 1][0] = h[j][k] - h[k][j];
+    a[i + 1][i + 1] = h[i][i] - h[j][j] - h[k][k];
+    a[i + 1][j + 1] = a[j + 1][i + 1] = h[i][j] + h[j][i];
+  }
+}
+
+/* Centroids of the points and of their partners; returns their number. */
+static size_t centroids(const struct vg_mesh *m,
+                        const struct vg_periodic_match *match,
+                        double middle[2][3])
+{
+  size_t n = 0;
+
+  memset(middle, 0, 6 * sizeof **middle);
+  for (size_t i = 0; i < m->n_point; i++) {
+    if (match->point[i] == VG_PERIODIC_NONE) continue;
+    for (int k = 0; k < 3; k++) {
+      middle[0][k] += m->point[i][k];
+      middle[1][k] += m->point[match->point[i]][k];
+    }
+    n++;
+  }
+  for (int k = 0; k < 3 && n; k++) {
+    middle[0][k] /= (double)n;
+    middle[1][k] /= (double)n;
+  }
+  return n;
+}
+
+/* Whether the points are on a line through their centroid. */
+static int is_line(const struct vg_mesh *m,
+                   const struct vg_periodic_match *match, const double x[3])
+{
+  double far[3] = { 0 }, d[3], c[3], length = 0, width = 0;
+
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < m->n_point; i++) {
+      if (match->point[i] == VG_PERIODIC_NONE) continue;
+      vg_sub(m->point[i], x, d);
+      if (!pass && vg_norm(d) > length) {
+        length = vg_norm(d);
+        memcpy(far, d, sizeof far);
+      }
+      vg_cross(far, d, c);
+      if (pass) width = fmax(width, vg_norm(c));
+    }
+  return !(width > ON_A_LINE * length * length);
+}
+
+void vg_periodic_refine_turn(const struct vg_mesh *m, struct vg_periodic *p,
+                             const struct vg_periodic_match *match)
+{
+  double middle[2][3], h[3][3] = { { 0 } }, a[4][4], q[4], l;
+  struct vg_periodic r = *p;
+
+  if (!p->is_rotation || centroids(m, match, middle) < 3 ||
+      is_line(m, match, middle[0]))
+    return;
+  for (size_t i = 0; i < m->n_point; i++) {
+    const uint32_t to = match->point[i];
+
+    for (int k = 0; k < 9 && to != VG_PERIODIC_NONE; k++)
+      h[k / 3][k % 3] += (m->point[i][k / 3] - middle[0][k / 3]) *
+                         (m->point[to][k % 3] - middle[1][k % 3]);
+  }
+  horn(h, a);
+  greatest(a, q);
+  memcpy(r.axis, q + 1, sizeof r.axis);
+  l = vg_unit(r.axis);
+  if (!(l > OPPOSITE)) return;
+  r.sine = 2 * q[0] * l;
+  r.cosine = q[0] * q[0] - l * l;
+  if (vg_dot(r.axis, p->axis) < 0) {
+    for (int k = 0; k < 3; k++) r.axis[k] = -r.axis[k];
+    r.sine = -r.sine;
+  }
+  round_off(r.axis, 1);
+  vg_unit(r.axis);
+  r.n = 0;
+  snap(&r);
+  set_centre(&r, middle[0], middle[1], vg_periodic_extent(m, p));
+  *p = r;
 }

@@ -49,7 +49,6 @@ int vg_read_has_solid_zones(const struct vg_read *r)
 
 const char *vg_read_keeps_triangles(const struct vg_read *r)
 {
-  if (r->settings.n_periodic) return "periodic patches";
   return wants_inner(&r->settings) || vg_read_has_solid_zones(r) ||
              vg_mesh_has_interfaces(&r->surface)
          ? "inner surfaces"

@@ -73,14 +73,18 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
   if (is_tessellation(r))
-    return !vg_read_keeps_triangles(r) && sliver_share(surface) > MOST;
+    return !vg_read_keeps_triangles(r) && !r->settings.n_periodic &&
+           sliver_share(surface) > MOST;
   return vg_read_is_cad(r) && !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)
 {
   const double share = sliver_share(&b->surface);
-  const char *keeps = vg_read_keeps_triangles(b->read);
+  const char *inner = vg_read_keeps_triangles(b->read);
+  const char *keeps = inner                        ? inner
+                    : b->read->settings.n_periodic ? "periodic patches"
+                                                   : NULL;
 
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
   if (b->is_remeshed)
@@ -94,9 +98,8 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
             "%.0f %% of the triangles have an angle below 10 degrees, and so "
             "will the cells on them: a surface with %s is not remeshed; %s",
             100 * share, keeps,
-            b->read->settings.n_periodic
-              ? "give one with better triangles"
-              : "--remesh-surface yes remeshes walls and inner surfaces");
+            inner ? "--remesh-surface yes remeshes walls and inner surfaces"
+                  : "--remesh-surface yes remeshes it");
   else if (!(b->read->settings.wrap > 0) && !vg_boundary_is_stretched(b))
     vg_note(b->notes,
             "%.0f %% of the triangles have an angle below 10 degrees, and so "
@@ -174,6 +177,17 @@ static vg_status given_areas(struct vg_boundary *b, const struct vg_mesh *given,
     if (at != SIZE_MAX) area[2 * at] = a->area[i];
   }
   return VG_OK;
+}
+
+static vg_status start_areas(struct vg_boundary *b, const struct vg_mesh *given,
+                             struct vg_error *err)
+{
+  struct vg_remeshing *r = &b->remeshing;
+
+  r->n_patch = given->n_patch;
+  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
+  if (!r->area) return vg_fail_memory(err, "the patches");
+  return given_areas(b, given, r->area, err);
 }
 
 struct remesh_request {
@@ -326,6 +340,11 @@ static void note_faults(struct vg_boundary *b)
             "%zu triangles were kept unchanged because new triangles would "
             "intersect there; the first are near (%.6g, %.6g, %.6g)",
             r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
+  if (vg_read_is_cad(b->read) && !b->model.cad)
+    vg_note(b->notes,
+            "points are not projected onto the CAD model, since the surface "
+            "has inner surfaces: it deviates from the model by the chord error "
+            "of the triangulation in addition (cad_chord)");
 }
 
 static void note_remeshing(struct vg_boundary *b)
@@ -400,6 +419,81 @@ static void note_size(struct vg_boundary *b)
             asked, most, b->remeshing.report.tolerance);
 }
 
+/* --- periodic patches ----------------------------------------------------- */
+
+/* The transforms, on the surface before it is remeshed. */
+static vg_status find_pairs(const struct vg_boundary *b,
+                            struct vg_display *show, struct vg_pairs *pairs,
+                            struct vg_error *err)
+{
+  const struct vg_stop stop = { vg_display_stop, show };
+  const struct vg_settings *s = &b->read->settings;
+  const double chord = vg_read_is_cad(b->read) ? vg_options_cad(s, 1).chord : 0;
+
+  return vg_pairs_locate(s, &b->surface, chord, b->threads, &stop, pairs, err);
+}
+
+/* The report by the new triangles: those of the image have the values of their
+ * originals. `at` of their entries are places of the originals. */
+static vg_status follow_report(struct vg_remeshing *r, size_t n,
+                               const uint32_t *origin, struct vg_error *err)
+{
+  struct vg_remesh_report *q = &r->report;
+  double *face = vg_alloc(n, sizeof *face);
+  uint32_t *of = vg_calloc(q->n_tri[1], sizeof *of);
+  struct vg_remesh_bad *bad = NULL;
+  size_t n_bad = 0, cap = 0;
+  vg_status st = VG_OK;
+
+  if (!face || !of) VG_TRY(vg_fail_memory(err, "the remeshed surface"));
+  for (size_t i = 0; i < q->n_bad; i++) of[q->bad[i].face] = (uint32_t)i + 1;
+  for (size_t t = 0; t < n; t++) {
+    const uint32_t i = of[origin[t]];
+
+    face[t] = r->face[origin[t]];
+    if (!i) continue;
+    if (vg_reserve(&bad, &cap, n_bad + 1, sizeof *bad) < 0)
+      VG_TRY(vg_fail_memory(err, "the remeshed surface"));
+    bad[n_bad] = q->bad[i - 1];
+    bad[n_bad++].face = t;
+  }
+  free(r->face);
+  free(q->bad);
+  r->face = face;
+  q->bad = bad;
+  q->n_bad = n_bad;
+  q->n_tri[1] = n;
+  face = NULL;
+  bad = NULL;
+done:
+  free(face);
+  free(of);
+  free(bad);
+  return st;
+}
+
+/* Makes the second patch of each pair the image of the first one. */
+static vg_status copy_pairs(struct vg_boundary *b, const struct vg_pairs *pairs,
+                            struct vg_error *err)
+{
+  uint32_t *origin = NULL;
+  size_t n_changed;
+  vg_status st;
+
+  if (!pairs->n) return VG_OK;
+  VG_TRY(vg_pairs_copy(pairs, &b->surface, &origin, &n_changed, err));
+  VG_TRY(follow_report(&b->remeshing, b->surface.n_tri, origin, err));
+  b->remeshing.report.n_point[1] = b->surface.n_point;
+  vg_note(b->notes,
+          "periodic patches: %zu second patch%s got the images of the new "
+          "triangles of the first; %zu points of borders were inserted or "
+          "removed for them",
+          pairs->n, pairs->n > 1 ? "es" : "", n_changed);
+done:
+  free(origin);
+  return st;
+}
+
 vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
@@ -410,6 +504,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   const int has_defects = b->check.n_defect >
                           b->check.count[VG_DEFECT_OPEN_EDGE];
   struct vg_mesh given = VG_MESH_INIT;
+  struct vg_pairs pairs = VG_PAIRS_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();
   vg_status st;
@@ -421,11 +516,9 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                    "patch, or set remesh_surface to no");
   vg_display_update(show, "surface remeshing", b->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
-  r->n_patch = given.n_patch;
-  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
-  if (!r->area) VG_TRY(vg_fail_memory(err, "the patches"));
-  VG_TRY(given_areas(b, &given, r->area, err));
+  VG_TRY(start_areas(b, &given, err));
   VG_TRY(hard_patches(b, &hard, err));
+  VG_TRY(find_pairs(b, show, &pairs, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
   VG_TRY(vg_boundary_field(b, sizes.n_source, sizes.source, &sizes.field, err));
   VG_TRY(vg_inner_lines_find(b, &lines, &sizes.stretch, &sizes.cap, err));
@@ -442,21 +535,18 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   vg_display_update(show, "projection", b->surface.n_tri, 0);
   if (b->model.cad) VG_TRY(vg_boundary_put_back(b, show, err));
   VG_TRY(vg_inner_lines_remesh(b, &lines, show, err));
+  VG_TRY(copy_pairs(b, &pairs, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
   VG_TRY(vg_surface_spacing_measure(b, r, err));
   note_faults(b);
-  if (vg_read_is_cad(b->read) && !b->model.cad)
-    vg_note(b->notes,
-            "points are not projected onto the CAD model, since the surface "
-            "has inner surfaces: it deviates from the model by the chord error "
-            "of the triangulation in addition (cad_chord)");
   note_remeshing(b);
   note_areas(b);
   note_size(b);
 done:
   vg_inner_lines_release(&lines);
   vg_surface_sizes_release(&sizes);
+  vg_pairs_release(&pairs);
   free(hard);
   vg_mesh_release(&given);
   return st;

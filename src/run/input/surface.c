@@ -575,15 +575,12 @@ static vg_status check_range(const struct vg_boundary *b, struct vg_error *err)
                  EXTENT_MIN);
 }
 
-/* Periodic patches keep their triangles. */
+/* Periodic patches stay images of each other. */
 static vg_status refuse_periodic(const struct vg_boundary *b,
                                  struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
-  const char *what = b->is_remeshed && s->remesh == VG_ANSWER_AUTO
-                     ? "remesh_surface auto remeshes a CAD model"
-                   : b->is_remeshed ? "the surface is remeshed (remesh_surface)"
-                   : b->read->is_section ? "the input is a plane section"
+  const char *what = b->read->is_section ? "the input is a plane section"
                    : s->wrap > 0         ? "wrap is given"
                    : vg_boundary_wants_inner(b)
                      ? "baffles, sheets or interfaces are given"
@@ -592,10 +589,10 @@ static vg_status refuse_periodic(const struct vg_boundary *b,
 
   if (!s->n_periodic || !what) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: the table periodic requires patches whose triangles "
-                 "match and are used as given, but %s; %s, or remove the table",
-                 b->read->files.stem, what,
-                 b->is_remeshed ? "set remesh_surface to no" : "change this");
+                 "%s: the table periodic requires patches that are images of "
+                 "each other in a closed surface, but %s; change this, or "
+                 "remove the table",
+                 b->read->files.stem, what);
 }
 
 vg_status vg_boundary_shape(struct vg_read *read,

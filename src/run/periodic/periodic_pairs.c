@@ -8,6 +8,8 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh.h"
+#include "core/periodic/copy.h"
+#include "core/remesh/remesh.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/periodic_table.h"
 
@@ -160,13 +162,16 @@ done:
   return st;
 }
 
-static vg_status add_pair(struct vg_pairs *list, struct vg_mesh *m,
-                          const struct vg_periodic_row *row, size_t line,
-                          size_t *n_moved, struct vg_error *err)
+/* Finds the transform of a row.
+ * by_corners: the faces have no partners yet. */
+static vg_status find_pair(const struct vg_pairs *list, const struct vg_mesh *m,
+                           const struct vg_periodic_row *row, size_t line,
+                           int by_corners, struct vg_periodic *out,
+                           int *is_given, struct vg_error *err)
 {
   struct vg_periodic p = { .patch = 0 };
   char pair[2 * VG_NAME_MAX + 60];
-  int is_given;
+  int is_found = 1;
   vg_status st;
 
   VG_TRY(find_patch(m, line, row->patch, row->patch_name, &p.patch, err));
@@ -182,10 +187,13 @@ static vg_status add_pair(struct vg_pairs *list, struct vg_mesh *m,
                    "a patch has one partner",
                    line,
                    (int)(vg_pairs_have(list, p.patch) ? p.patch : p.image));
-  is_given = take_transform(row, &p);
-  if (!is_given &&
-      (!vg_periodic_find(m, &p) ||
-       (row->kind && p.is_rotation != (row->kind == VG_PERIODIC_ROTATION))))
+  *is_given = take_transform(row, &p);
+  if (!*is_given && by_corners)
+    VG_TRY(vg_periodic_find_corners(m, &p, &is_found, err));
+  else if (!*is_given) is_found = vg_periodic_find(m, &p);
+  if (!*is_given && is_found && row->kind)
+    is_found = p.is_rotation == (row->kind == VG_PERIODIC_ROTATION);
+  if (!is_found)
     return vg_fail(err, VG_ERR_GEOMETRY,
                    "periodic: line %zu: no %s takes %s to each other, by their "
                    "areas, mean normals and centroids; check the patches, or "
@@ -195,6 +203,20 @@ static vg_status add_pair(struct vg_pairs *list, struct vg_mesh *m,
                    : row->kind == VG_PERIODIC_TRANSLATION ? "translation"
                                                           : "transform",
                    name_of(m, &p, pair, sizeof pair));
+  *out = p;
+done:
+  return st;
+}
+
+static vg_status add_pair(struct vg_pairs *list, struct vg_mesh *m,
+                          const struct vg_periodic_row *row, size_t line,
+                          size_t *n_moved, struct vg_error *err)
+{
+  struct vg_periodic p;
+  int is_given;
+  vg_status st;
+
+  VG_TRY(find_pair(list, m, row, line, 0, &p, &is_given, err));
   VG_TRY(settle(m, &p, !is_given, n_moved, err));
   list->pair[list->n++] = p;
 done:
@@ -305,5 +327,139 @@ vg_status vg_pairs_verify(const struct vg_pairs *list, const struct vg_mesh *m,
     if (!vg_periodic_matches(&r)) st = mismatch(m, p, exact, &r, remedy, err);
     vg_periodic_match_release(&r);
   }
+  return st;
+}
+
+/* --- patches that are remeshed -------------------------------------------- */
+
+/* The triangles of one patch with their points; with `by`, their images, of
+ * opposite orientation. */
+static vg_status take_patch(const struct vg_mesh *m, int32_t id,
+                            const struct vg_periodic *by, struct vg_mesh *out,
+                            struct vg_error *err)
+{
+  uint32_t *number = vg_alloc(m->n_point, sizeof *number);
+
+  out->tri = vg_alloc(m->n_tri, sizeof *out->tri);
+  out->tri_patch = vg_calloc(m->n_tri, sizeof *out->tri_patch);
+  out->point = vg_alloc(m->n_point, sizeof *out->point);
+  if (!number || !out->tri || !out->tri_patch || !out->point ||
+      vg_mesh_add_patch(out, id, "") == SIZE_MAX) {
+    free(number);
+    return vg_fail_memory(err, "the periodic patches");
+  }
+  memset(number, 0xff, m->n_point * sizeof *number);
+  for (size_t t = 0; t < m->n_tri; t++) {
+    if (m->patch[m->tri_patch[t]].id != id) continue;
+    for (int k = 0; k < 3; k++) {
+      const uint32_t i = m->tri[t][k];
+
+      if (number[i] == UINT32_MAX) {
+        double *x = out->point[out->n_point];
+
+        if (by) vg_periodic_image(by, m->point[i], x);
+        else memcpy(x, m->point[i], 3 * sizeof *x);
+        number[i] = (uint32_t)out->n_point++;
+      }
+      out->tri[out->n_tri][by ? 2 - k : k] = number[i];
+    }
+    out->n_tri++;
+  }
+  free(number);
+  return VG_OK;
+}
+
+/* Fails if the shapes of a pair differ by more than `limit`. */
+static vg_status compare(const struct vg_mesh *m, const struct vg_periodic *p,
+                         double limit, int threads, const struct vg_stop *stop,
+                         struct vg_error *err)
+{
+  struct vg_mesh side[2] = { VG_MESH_INIT, VG_MESH_INIT };
+  struct vg_remesh_distance d[2];
+  char pair[2 * VG_NAME_MAX + 60], by[300];
+  const double *at;
+  vg_status st;
+
+  VG_TRY(take_patch(m, p->patch, p, &side[0], err));
+  VG_TRY(take_patch(m, p->image, NULL, &side[1], err));
+  if (!side[0].n_tri || !side[1].n_tri)
+    VG_TRY(vg_fail(err, VG_ERR_GEOMETRY,
+                   "periodic: of %s, patch %d has no triangles; name patches "
+                   "of the surface, or remove the line",
+                   name_of(m, p, pair, sizeof pair),
+                   (int)(side[0].n_tri ? p->image : p->patch)));
+  VG_TRY(vg_remesh_measure(&side[0], &side[1], threads, stop, NULL, d, err));
+  at = d[d[1].most > d[0].most].at;
+  if (fmax(d[0].most, d[1].most) > limit)
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "periodic: %s do not match by %s: the largest distance is "
+                 "%.3g, at (%g, %g, %g) of patch %d, and at most %.3g is "
+                 "allowed; make the patches images of each other, or correct "
+                 "the transform",
+                 name_of(m, p, pair, sizeof pair),
+                 transform_of(p, by, sizeof by), fmax(d[0].most, d[1].most),
+                 at[0], at[1], at[2], (int)p->image, limit);
+done:
+  for (int i = 0; i < 2; i++) vg_mesh_release(&side[i]);
+  return st;
+}
+
+vg_status vg_pairs_locate(const struct vg_settings *s, const struct vg_mesh *m,
+                          double chord, int threads, const struct vg_stop *stop,
+                          struct vg_pairs *list, struct vg_error *err)
+{
+  const size_t n = s->n_periodic;
+  vg_status st = VG_OK;
+
+  vg_pairs_release(list);
+  if (!n) return VG_OK;
+  list->pair = vg_alloc(n, sizeof *list->pair);
+  if (!list->pair) return vg_fail_memory(err, "the periodic patches");
+  for (size_t i = 0; i < n; i++) {
+    struct vg_periodic *p = &list->pair[list->n];
+    int is_given;
+
+    VG_TRY(
+      find_pair(list, m, &s->periodic_row[i], i + 1, 1, p, &is_given, err));
+    VG_TRY(compare(m, p, (2 * chord + TOLERANCE) * vg_periodic_extent(m, p),
+                   threads, stop, err));
+    list->n++;
+  }
+done:
+  return st;
+}
+
+/* Replaces *origin of the former triangles by that of the new ones. */
+static void follow_origin(uint32_t **origin, size_t n,
+                          struct vg_periodic_copied *c)
+{
+  for (size_t t = 0; t < n && *origin; t++)
+    c->origin[t] = (*origin)[c->origin[t]];
+  free(*origin);
+  *origin = c->origin;
+  c->origin = NULL;
+}
+
+vg_status vg_pairs_copy(const struct vg_pairs *list, struct vg_mesh *m,
+                        uint32_t **origin, size_t *n_changed,
+                        struct vg_error *err)
+{
+  struct vg_periodic_copied c = VG_PERIODIC_COPIED_INIT;
+  vg_status st = VG_OK;
+
+  *n_changed = 0;
+  /* Patches of several pairs may share edges: then each pair changes the border
+   * of the others, until all edges follow from one of them. */
+  for (size_t round = 0; round < list->n; round++)
+    for (size_t i = 0; i < list->n; i++) {
+      const struct vg_periodic *p = &list->pair[i];
+
+      VG_TRY(
+        vg_periodic_copy(m, p, TOLERANCE * vg_periodic_extent(m, p), &c, err));
+      *n_changed += c.n_inserted + c.n_removed;
+      follow_origin(origin, m->n_tri, &c);
+    }
+done:
+  vg_periodic_copied_release(&c);
   return st;
 }

@@ -3,6 +3,7 @@
 #ifndef VG_RUN_PERIODIC_PERIODIC_PAIRS_H
 #define VG_RUN_PERIODIC_PERIODIC_PAIRS_H
 
+#include "base/stop.h"
 #include "core/periodic/periodic.h"
 #include "run/settings/settings.h"
 
@@ -31,6 +32,31 @@ void vg_pairs_release(struct vg_pairs *list);
 vg_status vg_pairs_settle(const struct vg_settings *s, struct vg_mesh *m,
                           struct vg_pairs *list, size_t *n_moved,
                           int *is_changed, struct vg_error *err);
+
+/** Finds or takes the transforms of all rows of s on a surface whose patches
+ * need not have matching triangles.
+ *
+ * @param chord  distance within which the triangles approximate the shape, as a
+ *               share of the extent of a pair
+ * @param list   replaced
+ *
+ * VG_ERR_INPUT as vg_pairs_settle. VG_ERR_GEOMETRY for patches whose shapes
+ * differ: the message has the largest distance and its place. */
+vg_status vg_pairs_locate(const struct vg_settings *s, const struct vg_mesh *m,
+                          double chord, int threads, const struct vg_stop *stop,
+                          struct vg_pairs *list, struct vg_error *err);
+
+/** Replaces the triangles of the second patch of each pair by the images of
+ * those of the first one (core/periodic/copy.h).
+ *
+ * @param origin     out: [m->n_tri] owned by the caller: the former triangle of
+ *                   each one; replaces NULL
+ * @param n_changed  out: points inserted into borders or removed from them
+ *
+ * VG_ERR_GEOMETRY as vg_periodic_copy; m may then have changed in part. */
+vg_status vg_pairs_copy(const struct vg_pairs *list, struct vg_mesh *m,
+                        uint32_t **origin, size_t *n_changed,
+                        struct vg_error *err);
 
 #define VG_BC_PERIODIC 6100 /* FUN3D's code, also written as USM3D's. */
 

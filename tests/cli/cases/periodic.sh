@@ -182,7 +182,6 @@ table "needs angle and ux, uy, uz" "patch image angle" "w1 w2 90"
 table "no rotation takes patches 1 (w1) and 2 (w2)" "patch image kind" \
   "w1 w2 rotation"
 deck err "patch image" "w1 w2"
-refused "the surface is remeshed" --remesh-surface yes
 refused "wrap is given" --wrap 0.1
 refused "surface_swap is yes" --surface-swap yes
 refused "baffles, sheets or interfaces are given" --sheets w5
@@ -215,6 +214,16 @@ deck long "patch image" "w5 w6"
 vanguard plan long.stl --flow internal
 exits 0
 says out "a surface with periodic patches is not remeshed"
+
+# On request the first patch is remeshed, and the second one is its image.
+for name in ring disk; do
+  vanguard mesh $name.stl --flow internal --remesh-surface yes --hmax 0.12 \
+    --surface-size 0.1 --quiet --write b8.ugrid --out "o_$name"
+  exits 0
+  report $name '.periodic_distance == 0 and .periodic[0].triangles > 200'
+  vanguard check "o_$name/$name.b8.ugrid"
+  exits 0
+done
 
 # Other diagonals, and other numbers of triangles.
 duct box "w7 8 8  1 0 1  0 1 0  -1 0 0"
