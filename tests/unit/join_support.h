@@ -137,6 +137,11 @@ static inline void model_rims(struct model *m,
       abort();
     memcpy(c->border[c->n_border], e, sizeof *c->border);
     c->border_patch[c->n_border++] = q;
+    for (int k = 0; k < 2; k++) {
+      uint32_t *slide = c->column[e[k]].slide;
+
+      if (slide[0] != q) slide[slide[0] != VG_NO_INDEX] = q;
+    }
     if (a != b) shape_tri(&m->surface, b, a, m->apex, q);
   }
   free(edge);
@@ -256,6 +261,17 @@ static inline void model_front_points(struct model *m, uint32_t *top,
   }
 }
 
+/* Whether columns with levels slide in patch q, which is then remeshed. */
+static inline int model_is_raised(const struct vg_columns *c, uint32_t q)
+{
+  int is_raised = 0;
+
+  for (size_t i = 0; i < 2 * c->n_border; i++)
+    is_raised |= c->border_patch[i / 2] == q &&
+                 c->column[c->border[i / 2][i % 2]].n;
+  return is_raised;
+}
+
 /* The front: tops, and the cone over the boundary edges, or other triangles
  * unchanged. */
 static inline void model_front(struct model *m)
@@ -264,7 +280,7 @@ static inline void model_front(struct model *m)
   uint32_t *top = vg_alloc(c->n_column, sizeof *top);
   uint32_t *point = vg_alloc(m->surface.n_point, sizeof *point);
   struct vg_front *f = &m->layers.front;
-  int raised = 0;
+  size_t n_raised = 0;
 
   shape_need(top);
   shape_need(point);
@@ -276,9 +292,9 @@ static inline void model_front(struct model *m)
     model_front_tri(m, t, MODEL_WALL, (uint32_t)i);
   }
   for (size_t r = 0; r < c->n_border; r++)
-    raised |= c->column[c->border[r][0]].n || c->column[c->border[r][1]].n;
-  /* A remeshed patch has its own points. */
-  if (raised) f->id[point[m->apex]] = VG_LAYER_NEW;
+    n_raised += model_is_raised(c, c->border_patch[r]);
+  /* Remeshed patches have their own points. */
+  if (n_raised && n_raised == c->n_border) f->id[point[m->apex]] = VG_LAYER_NEW;
   for (size_t r = 0; r < c->n_border; r++) {
     uint32_t t[3] = { top[c->border[r][1]], top[c->border[r][0]],
                       point[m->apex] };

@@ -367,7 +367,7 @@ static void a_sphere_has_a_column_per_point(void **state)
   assert_int_equal(s.c.n_border, 0);
   assert_int_equal(check(&s, 0.05), 2);
   for (size_t i = 0; i < s.c.n_column; i++) {
-    assert_int_equal(s.t.blocked[i], 0);
+    assert_int_equal(s.c.column[i].cause, 0);
     assert_true(s.c.column[i].slide[0] == VG_NO_INDEX);
   }
   made_release(&s);
@@ -393,7 +393,7 @@ static void a_half_body_slides_on_its_plane(void **state)
     n_sliding += s.c.column[i].slide[0] == 1;
     assert_true((s.c.column[i].slide[0] == 1) == sliding);
     assert_true(s.c.column[i].slide[1] == VG_NO_INDEX);
-    assert_int_equal(s.t.blocked[i], 0);
+    assert_int_equal(s.c.column[i].cause, 0);
   }
   assert_int_equal(n_sliding, 16);
   assert_int_equal(check(&s, 0.01), 1);
@@ -420,7 +420,7 @@ static void a_floor_slides_in_four_sides(void **state)
     assert_true(s.c.column[i].slide[0] == (a < b ? a : b));
     assert_true(s.c.column[i].slide[1] == (a < b ? b : a));
     n_two += a != VG_NO_INDEX && b != VG_NO_INDEX;
-    assert_int_equal(s.t.blocked[i], 0);
+    assert_int_equal(s.c.column[i].cause, 0);
   }
   assert_int_equal(n_two, 4);
   assert_int_equal(check(&s, 0.1), 1);
@@ -438,7 +438,7 @@ static void the_edge_to_an_inert_patch_is_blocked(void **state)
   for (size_t i = 0; i < s.c.n_column; i++) {
     const double *x = s.m.point[s.c.column[i].root];
 
-    assert_int_equal(s.t.blocked[i],
+    assert_int_equal(s.c.column[i].cause,
                      x[0] == 1 || x[1] == 1 ? VG_CAUSE_SLIDE : VG_CAUSE_NONE);
   }
   made_release(&s);
@@ -465,9 +465,9 @@ static void a_pinched_point_is_blocked(void **state)
     }
   build(&s, 1, ~0u, 60);
   for (size_t i = 0; i < s.c.n_column; i++) {
-    assert_int_equal(s.t.blocked[i], s.c.column[i].root == keep
-                                       ? VG_CAUSE_SLIDE
-                                       : VG_CAUSE_NONE);
+    assert_int_equal(s.c.column[i].cause, s.c.column[i].root == keep
+                                            ? VG_CAUSE_SLIDE
+                                            : VG_CAUSE_NONE);
     n += s.c.column[i].root == keep;
   }
   assert_int_equal(n, 1);

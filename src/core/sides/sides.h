@@ -52,6 +52,13 @@ struct vg_sides {
     0                                                                          \
   }
 
+/** The corner of half-edge h = 3 t + k on a side of triangle t: an index into
+ * across[] and sector[]. */
+static inline uint32_t vg_sides_corner(uint32_t h, int side)
+{
+  return 3 * (2 * (h / 3) + (uint32_t)side) + h % 3;
+}
+
 /** Find neighbours, sectors and regions. Sectors and regions are numbered in
  * the order of their first corners and half-faces.
  *

@@ -70,7 +70,7 @@ static struct leaf leaf_of(const struct vg_sides *s, uint32_t corner)
 /* Half-face corner of a leaf on its normal side (1) or on the other (0). */
 static uint32_t side_of(uint32_t corner, int is_normal)
 {
-  return vg_wedge_side(corner, !is_normal);
+  return vg_sides_corner(corner, !is_normal);
 }
 
 static int index_in(const uint32_t at[3], uint32_t p)

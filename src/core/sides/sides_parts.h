@@ -29,19 +29,14 @@ int vg_turn_before(const struct vg_turn *axis, const double y[3],
  * counter-clockwise (above) or clockwise (below) around the edge. The normal
  * side of a triangle looks counter-clockwise if its half-edge begins at the
  * lower point. */
-static inline uint32_t vg_wedge_side(uint32_t h, int side)
-{
-  return 3 * (2 * (h / 3) + (uint32_t)side) + h % 3;
-}
-
 static inline uint32_t vg_wedge_above(const struct vg_sides *s, uint32_t h)
 {
-  return vg_wedge_side(h, vg_half_from(s->tri, h) > vg_half_to(s->tri, h));
+  return vg_sides_corner(h, vg_half_from(s->tri, h) > vg_half_to(s->tri, h));
 }
 
 static inline uint32_t vg_wedge_below(const struct vg_sides *s, uint32_t h)
 {
-  return vg_wedge_side(h, vg_half_from(s->tri, h) < vg_half_to(s->tri, h));
+  return vg_sides_corner(h, vg_half_from(s->tri, h) < vg_half_to(s->tri, h));
 }
 
 #endif

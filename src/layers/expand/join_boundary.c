@@ -18,81 +18,21 @@ struct work {
   size_t *tri, *quad; /* [n_patch] index of the next new face of each patch. */
 };
 
-/* Whether front triangle f has the same points as triangle s of the surface. */
-static int same_tri(const struct work *w, size_t f, size_t s)
+/* The patches in which columns with levels slide were remeshed (slide.h). The
+ * triangles of all others remain. */
+static void find_changes(struct work *w)
 {
-  for (int k = 0; k < 3; k++) {
-    uint32_t v = w->p->front->face[f][k];
-
-    if (w->p->front->id[v] != vg_layer_point_id(w->p->surface->tri[s][k]))
-      return 0;
-  }
-  return 1;
-}
-
-/* A patch without layers is unchanged if the front has the same triangles of it
- * in the same order. A wall is always unchanged, even where no column has
- * levels. at: [n_patch + 1]; list: [surface->n_tri] triangles sorted by
- * patch. */
-static void compare_patches(struct work *w, const uint8_t *is_wall, size_t *at,
-                            uint32_t *list)
-{
+  const struct vg_columns *c = w->p->columns;
   const struct vg_mesh *s = w->p->surface;
-  const struct vg_front *f = w->p->front;
-  size_t sum = 0;
 
-  for (size_t i = 0; i < s->n_tri; i++)
-    if (!w->stays[i]) at[s->tri_patch[i]]++;
-  for (size_t q = 0; q <= s->n_patch; q++) {
-    size_t here = at[q];
+  for (size_t i = 0; i < 2 * c->n_border; i++) {
+    const struct vg_column *column = &c->column[c->border[i / 2][i % 2]];
 
-    at[q] = sum;
-    sum += here;
+    for (int k = 0; k < 2 && column->n; k++)
+      if (column->slide[k] != VG_NO_INDEX) w->changed[column->slide[k]] = 1;
   }
   for (size_t i = 0; i < s->n_tri; i++)
-    if (!w->stays[i]) list[at[s->tri_patch[i]]++] = (uint32_t)i;
-  for (size_t q = s->n_patch; q; q--) at[q] = at[q - 1];
-  at[0] = 0;
-  for (size_t i = 0; i < f->n_face; i++) {
-    uint32_t q = f->patch[i];
-
-    if (f->face_id[i] != VG_NO_INDEX || is_wall[q]) continue;
-    if (at[q] < sum && s->tri_patch[list[at[q]]] == q &&
-        same_tri(w, i, list[at[q]]))
-      at[q]++;
-    else w->changed[q] = 1;
-  }
-  for (size_t i = 0; i < sum; i++) {
-    uint32_t q = s->tri_patch[list[i]];
-
-    if (i >= at[q]) w->changed[q] = 1;
-  }
-}
-
-static vg_status find_changes(struct work *w, struct vg_error *err)
-{
-  const struct vg_mesh *s = w->p->surface;
-  size_t *at = vg_calloc(s->n_patch + 1, sizeof *at);
-  uint32_t *list = vg_alloc(s->n_tri, sizeof *list);
-  uint8_t *is_wall = vg_calloc(s->n_patch, 1);
-  vg_status st = VG_OK;
-
-  for (size_t i = 0; is_wall && i < w->p->columns->n_face; i++) {
-    uint32_t tri = w->p->columns->face_tri[i];
-
-    if (tri == VG_NO_INDEX) continue;
-    w->stays[tri] = 1;
-    is_wall[s->tri_patch[tri]] = 1;
-  }
-  if (at && list && is_wall) {
-    compare_patches(w, is_wall, at, list);
-    for (size_t i = 0; i < s->n_tri; i++)
-      if (!w->changed[s->tri_patch[i]]) w->stays[i] = 1;
-  } else st = vg_fail_memory(err, "the boundary of the mesh");
-  free(at);
-  free(list);
-  free(is_wall);
-  return st;
+    w->stays[i] = !w->changed[s->tri_patch[i]];
 }
 
 /* Marks the triangles of the walls that are in quadrilaterals. They remain, but
@@ -252,7 +192,7 @@ vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err)
     st = vg_fail_memory(err, "the boundary of the mesh");
     goto done;
   }
-  VG_TRY(find_changes(&w, err));
+  find_changes(&w);
   find_quads(&w);
   count_boundary(&w);
   VG_TRY(reserve_boundary(w.m, err));

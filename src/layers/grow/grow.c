@@ -198,12 +198,11 @@ static vg_status first_allowed(struct vg_layer_work *w,
     goto done;
   }
   for (size_t i = 0; i < n; i++) {
-    if (w->t.blocked && w->t.blocked[i] == VG_CAUSE_INNER)
-      vg_heights_lower(w, i, 0, VG_CAUSE_INNER);
-    if (w->visibility[i] == 0)
+    const enum vg_layer_cause cause = w->c->column[i].cause;
+
+    if (w->visibility[i] == 0 && cause != VG_CAUSE_INNER)
       vg_heights_lower(w, i, 0, vg_unseen_cause(w, i, normal));
-    if (w->t.blocked && w->t.blocked[i])
-      vg_heights_lower(w, i, 0, (enum vg_layer_cause)w->t.blocked[i]);
+    if (cause) vg_heights_lower(w, i, 0, cause);
   }
   VG_TRY(vg_heights_slack(w, err));
   VG_TRY(vg_heights_corner(w, err));
@@ -635,7 +634,7 @@ static vg_status topology(struct vg_layer_work *w, struct vg_error *err)
   c->n_twin = c->n_column;
   VG_TRY(vg_twins_find(&w->twins, w->m, c, alone, err));
   for (size_t i = 0; i < c->n_column; i++)
-    if (alone[i] && !w->t.blocked[i]) w->t.blocked[i] = VG_CAUSE_SLIDE;
+    if (alone[i] && !c->column[i].cause) c->column[i].cause = VG_CAUSE_SLIDE;
 done:
   free(is_image);
   free(alone);

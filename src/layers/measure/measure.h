@@ -64,10 +64,12 @@ struct vg_range {
 struct vg_patch_layers {
   uint32_t patch;
   size_t n_face, n_point;
-  size_t n_bare;       /* Faces without layers because growth law and local size
-                          request no level at a corner. */
-  double full;         /* % of faces with layers, all of whose columns have the
-                          levels that growth law and local size request. */
+  size_t n_bare;      /* Faces without layers because growth law and local size
+                         request no level at a corner. */
+  double full;        /* % of faces with layers, all of whose columns have the
+                         levels that growth law and local size request. */
+  double full_inside; /* The same, as % of the faces that neither a free edge of
+                         an inner surface nor one without layers limits. */
   double uncompressed; /* % of faces that are full at the growth law. */
   double any;          /* % of faces with at least one level at all three
                           corners. */

@@ -132,6 +132,7 @@ static void finish(struct tally *t)
   struct vg_patch_layers *p = &t->p;
 
   p->full = percent(t->n_full, p->n_face);
+  p->full_inside = percent(t->n_full, p->n_face - p->cause[VG_CAUSE_INNER]);
   p->uncompressed = percent(t->n_uncompressed, p->n_face);
   p->any = percent(t->n_any, p->n_face);
   finish_range(&p->asked, p->n_point);

@@ -446,7 +446,7 @@ static vg_status visit(struct build *b, uint32_t p, int rule,
   size_t size[VG_FAN_SECTORS], n = 0;
   vg_status st;
 
-  if (w->blocked[p] || w->slide[p][1] != VG_NO_INDEX) return VG_OK;
+  if (w->cause[p] || w->slide[p][1] != VG_NO_INDEX) return VG_OK;
   s.n_sector = cut(b, p, rule, corner, size, &s.is_open);
   if (s.n_sector < 2) return VG_OK;
   set_plane(b, p, &s);

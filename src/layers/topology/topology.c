@@ -16,7 +16,6 @@ void vg_topology_release(struct vg_topology *t)
   free(t->near_first);
   free(t->near);
   free(t->preset);
-  free(t->blocked);
   memset(t, 0, sizeof *t);
 }
 
@@ -27,9 +26,7 @@ static vg_status make_columns(const struct vg_wall *w, const struct vg_fans *f,
   c->n_column = f->first[w->n_point];
   c->column = vg_calloc(c->n_column, sizeof *c->column);
   t->preset = vg_calloc(c->n_column, sizeof *t->preset);
-  t->blocked = vg_calloc(c->n_column, sizeof *t->blocked);
-  if (!c->column || !t->preset || !t->blocked)
-    return vg_fail_memory(err, "the columns");
+  if (!c->column || !t->preset) return vg_fail_memory(err, "the columns");
   for (size_t p = 0; p < w->n_point; p++)
     for (size_t i = f->first[p]; i < f->first[p + 1]; i++) {
       struct vg_column *col = &c->column[i];
@@ -37,7 +34,7 @@ static vg_status make_columns(const struct vg_wall *w, const struct vg_fans *f,
       col->root = w->point[p];
       memcpy(col->slide, w->slide[p], sizeof col->slide);
       col->bent = SIZE_MAX;
-      t->blocked[i] = w->blocked[p];
+      col->cause = w->cause[p];
     }
   for (size_t i = 0; i < f->n_preset; i++) {
     const struct vg_fan_preset *preset = &f->preset[i];

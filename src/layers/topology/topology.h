@@ -15,24 +15,25 @@ struct vg_topology {
                            sorted. */
   uint8_t *preset;      /* [n_column] 1: the direction is given (a column inside
                            a fan, without a triangle of its own). */
-  uint8_t *blocked;     /* [n_column] VG_CAUSE_NONE, or why the column cannot
-                           have levels (n must be 0). VG_CAUSE_SLIDE: several
-                           wall sheets meet at the point, or the point touches
-                           more than two slide patches or a patch that is
-                           neither a wall nor a slide patch. VG_CAUSE_INNER: the
-                           point is on the free edge of an inner surface, or
-                           touches one without layers. */
 };
 #define VG_TOPOLOGY_INIT                                                       \
   {                                                                            \
-    NULL, NULL, NULL, NULL, NULL, NULL                                         \
+    NULL, NULL, NULL, NULL, NULL                                               \
   }
 
 void vg_topology_release(struct vg_topology *t);
 
-/** Builds columns, faces, boundary edges and their adjacency. The members n,
- * dir, cap and law of the columns are 0, except for the unit direction of
- * preset columns.
+/** Builds columns, faces, boundary edges and their adjacency from the fluid
+ * sides of the surface. The members n, dir, cap and law of the columns are 0,
+ * except for the unit direction of preset columns.
+ *
+ * The columns of a point stand in its sector (core/sides/sides.h); a doubled
+ * inner surface (core/sides/inner.h) has a point for each sector. `cause` of a
+ * column is VG_CAUSE_NONE, or why it cannot have levels (n must be 0):
+ * VG_CAUSE_INNER: the point is on the free edge of an inner surface, or touches
+ * one without layers. VG_CAUSE_SLIDE: the point has several sectors, or several
+ * sheets of walls in its sector, or it touches more than two slide patches or a
+ * patch that is neither a wall nor a slide patch.
  *
  * slide[] of a column contains the first two slide patches, by index, that its
  * point touches by an edge or only by the point.

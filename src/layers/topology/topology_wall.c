@@ -6,16 +6,16 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/sides/sides.h"
 
 enum role { INERT, WALL, SLIDE };
 
-/* All triangles around wall points, and data needed only during the build. */
-struct rings {
-  uint8_t *role;    /* [n_patch] enum role. */
-  uint32_t *id;     /* [surface n_point] wall point or VG_NO_INDEX. */
-  uint32_t *face;   /* [surface n_tri] wall face or VG_NO_INDEX. */
-  uint32_t *first;  /* [wall n_point + 1] offsets into corner[]. */
-  uint32_t *corner; /* 3 * triangle of the surface + k. */
+/* Data needed only during the build. */
+struct build {
+  uint8_t *role;         /* [n_patch] enum role. */
+  uint32_t *id;          /* [surface n_point] wall point or VG_NO_INDEX. */
+  uint32_t *face;        /* [surface n_tri] wall face or VG_NO_INDEX. */
+  struct vg_sides sides; /* Of the surface; the fluid is on side 0. */
 };
 
 void vg_wall_release(struct vg_wall *w)
@@ -28,124 +28,87 @@ void vg_wall_release(struct vg_wall *w)
   free(w->border_patch);
   free(w->slide);
   free(w->start);
-  free(w->blocked);
+  free(w->cause);
   memset(w, 0, sizeof *w);
 }
 
-static void rings_release(struct rings *r)
+static void build_release(struct build *b)
 {
-  free(r->role);
-  free(r->id);
-  free(r->face);
-  free(r->first);
-  free(r->corner);
+  free(b->role);
+  free(b->id);
+  free(b->face);
+  vg_sides_release(&b->sides);
 }
 
 static vg_status find_roles(const struct vg_mesh *m, const uint8_t *is_wall,
                             size_t n_slide, const struct vg_slide *slide,
-                            struct rings *r, struct vg_error *err)
+                            struct build *b, struct vg_error *err)
 {
   if (m->n_tri > UINT32_MAX / 12)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "the surface has %zu triangles, but layers support at most "
                    "%u; coarsen the surface",
                    m->n_tri, UINT32_MAX / 12);
-  r->role = vg_calloc(m->n_patch, sizeof *r->role);
-  r->id = vg_alloc(m->n_point, sizeof *r->id);
-  r->face = vg_alloc(m->n_tri, sizeof *r->face);
-  if (!r->role || !r->id || !r->face)
+  b->role = vg_calloc(m->n_patch, sizeof *b->role);
+  b->id = vg_alloc(m->n_point, sizeof *b->id);
+  b->face = vg_alloc(m->n_tri, sizeof *b->face);
+  if (!b->role || !b->id || !b->face)
     return vg_fail_memory(err, "the patches of the walls");
-  memset(r->id, 0xff, m->n_point * sizeof *r->id);
-  memset(r->face, 0xff, m->n_tri * sizeof *r->face);
-  for (size_t i = 0; i < n_slide; i++) r->role[slide[i].patch] = SLIDE;
+  memset(b->id, 0xff, m->n_point * sizeof *b->id);
+  memset(b->face, 0xff, m->n_tri * sizeof *b->face);
+  for (size_t i = 0; i < n_slide; i++) b->role[slide[i].patch] = SLIDE;
   for (size_t i = 0; i < m->n_patch; i++)
-    if (is_wall[i]) r->role[i] = WALL;
+    if (is_wall[i]) b->role[i] = WALL;
   return VG_OK;
 }
 
 /* Numbers points and faces of the walls in the order of the surface. */
-static vg_status number(struct vg_wall *w, struct rings *r,
+static vg_status number(struct vg_wall *w, struct build *b,
                         struct vg_error *err)
 {
   const struct vg_mesh *m = w->surface;
   size_t n = 0;
 
   for (size_t t = 0; t < m->n_tri; t++)
-    if (r->role[m->tri_patch[t]] == WALL) {
-      r->face[t] = (uint32_t)w->n_face++;
-      for (int k = 0; k < 3; k++) r->id[m->tri[t][k]] = 0;
+    if (b->role[m->tri_patch[t]] == WALL) {
+      b->face[t] = (uint32_t)w->n_face++;
+      for (int k = 0; k < 3; k++) b->id[m->tri[t][k]] = 0;
     }
-  for (size_t p = 0; p < m->n_point; p++) w->n_point += r->id[p] == 0;
+  for (size_t p = 0; p < m->n_point; p++) w->n_point += b->id[p] == 0;
   w->point = vg_alloc(w->n_point, sizeof *w->point);
   w->tri = vg_alloc(w->n_face, sizeof *w->tri);
   w->face = vg_alloc(w->n_face, sizeof *w->face);
   w->opposite = vg_alloc(3 * w->n_face, sizeof *w->opposite);
   w->slide = vg_alloc(w->n_point, sizeof *w->slide);
   w->start = vg_alloc(w->n_point, sizeof *w->start);
-  w->blocked = vg_calloc(w->n_point, sizeof *w->blocked);
+  w->cause = vg_calloc(w->n_point, sizeof *w->cause);
   if (!w->point || !w->tri || !w->face || !w->opposite || !w->slide ||
-      !w->start || !w->blocked)
+      !w->start || !w->cause)
     return vg_fail_memory(err, "the points of the walls");
   for (size_t p = 0; p < m->n_point; p++)
-    if (r->id[p] == 0) {
+    if (b->id[p] == 0) {
       w->point[n] = (uint32_t)p;
-      r->id[p] = (uint32_t)n++;
+      b->id[p] = (uint32_t)n++;
     }
   for (size_t t = 0; t < m->n_tri; t++) {
-    uint32_t f = r->face[t];
+    uint32_t f = b->face[t];
 
     if (f == VG_NO_INDEX) continue;
     w->tri[f] = (uint32_t)t;
-    for (int k = 0; k < 3; k++) w->face[f][k] = r->id[m->tri[t][k]];
+    for (int k = 0; k < 3; k++) w->face[f][k] = b->id[m->tri[t][k]];
   }
   return VG_OK;
 }
 
-/* Corners of all triangles around wall points, by counting sort. */
-static vg_status collect_rings(const struct vg_wall *w, struct rings *r,
-                               struct vg_error *err)
+/* The half-edge of the surface across half-edge h of a triangle, seen from the
+ * fluid; VG_NO_INDEX at an edge with more than two triangles. */
+static uint32_t across(const struct vg_sides *s, uint32_t h)
 {
-  const struct vg_mesh *m = w->surface;
+  uint32_t g;
 
-  r->first = vg_calloc(w->n_point + 2, sizeof *r->first);
-  if (!r->first) return vg_fail_memory(err, "the rings of wall points");
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3; k++)
-      if (r->id[m->tri[t][k]] != VG_NO_INDEX)
-        r->first[r->id[m->tri[t][k]] + 2]++;
-  for (size_t i = 2; i <= w->n_point + 1; i++) r->first[i] += r->first[i - 1];
-  r->corner = vg_alloc(r->first[w->n_point + 1], sizeof *r->corner);
-  if (!r->corner) return vg_fail_memory(err, "the rings of wall points");
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (uint32_t k = 0; k < 3; k++) {
-      uint32_t id = r->id[m->tri[t][k]];
-
-      if (id != VG_NO_INDEX)
-        r->corner[r->first[id + 1]++] = 3 * (uint32_t)t + k;
-    }
-  return VG_OK;
-}
-
-/* Half-edge of the surface from b to a (wall points); VG_NO_INDEX unless there
- * is exactly one. Searches the shorter of the two rings, so that points with
- * many neighbours cost no more than others. */
-static uint32_t find_reverse(const struct vg_wall *w, const struct rings *r,
-                             uint32_t a, uint32_t b)
-{
-  const struct vg_mesh *m = w->surface;
-  int at_a = r->first[a + 1] - r->first[a] < r->first[b + 1] - r->first[b];
-  uint32_t at = at_a ? a : b, other = w->point[at_a ? b : a];
-  uint32_t found = VG_NO_INDEX;
-
-  for (uint32_t i = r->first[at]; i < r->first[at + 1]; i++) {
-    uint32_t h = r->corner[i];
-    uint32_t to = at_a ? vg_half_prev(h) : vg_half_next(h);
-
-    if (m->tri[to / 3][to % 3] != other) continue;
-    if (found != VG_NO_INDEX) return VG_NO_INDEX;
-    found = at_a ? to : h;
-  }
-  return found;
+  if (vg_edges_count(&s->edge, s->edge.of_half[h]) != 2) return VG_NO_INDEX;
+  g = s->across[vg_sides_corner(h, 0)];
+  return 3 * (g / 6) + g % 3;
 }
 
 static int is_inner(const struct vg_mesh *m, size_t tri)
@@ -167,36 +130,33 @@ static int is_free_edge(const struct vg_mesh *m, uint32_t h, uint32_t g)
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-static void block(struct vg_wall *w, size_t p, enum vg_layer_cause why)
+static void limit(struct vg_wall *w, size_t p, enum vg_layer_cause cause)
 {
-  if (w->blocked[p] != VG_CAUSE_INNER) w->blocked[p] = (uint8_t)why;
+  if (w->cause[p] != VG_CAUSE_INNER) w->cause[p] = (uint8_t)cause;
 }
 
-static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
+static vg_status find_opposites(struct vg_wall *w, const struct build *b,
                                 struct vg_error *err)
 {
   const struct vg_mesh *m = w->surface;
   size_t cap_half = 0, cap_patch = 0;
 
   for (uint32_t h = 0; h < 3 * w->n_face; h++) {
-    uint32_t a = w->face[h / 3][h % 3];
-    uint32_t next = vg_half_next(h), b = w->face[h / 3][next % 3];
-    uint32_t g = find_reverse(w, r, a, b), patch, face;
+    const uint32_t at = 3 * w->tri[h / 3] + h % 3, next = vg_half_next(h);
+    const uint32_t g = across(&b->sides, at);
+    const int is_shared = g == VG_NO_INDEX;
+    uint32_t patch, face;
 
     w->opposite[h] = VG_NO_INDEX;
-    if (g == VG_NO_INDEX) {
-      block(w, a, VG_CAUSE_SLIDE);
-      block(w, b, VG_CAUSE_SLIDE);
-      continue;
-    }
-    if (is_free_edge(m, 3 * w->tri[h / 3] + h % 3, g)) {
-      block(w, a, VG_CAUSE_INNER);
-      block(w, b, VG_CAUSE_INNER);
-    }
-    face = r->face[g / 3];
+    if (is_shared || is_free_edge(m, at, g))
+      for (int k = 0; k < 2; k++)
+        limit(w, w->face[h / 3][(k ? next : h) % 3],
+              is_shared ? VG_CAUSE_SLIDE : VG_CAUSE_INNER);
+    if (is_shared) continue;
+    face = b->face[g / 3];
     patch = m->tri_patch[g / 3];
     if (face != VG_NO_INDEX) w->opposite[h] = 3 * face + g % 3;
-    if (r->role[patch] != SLIDE) continue;
+    if (b->role[patch] != SLIDE) continue;
     if (vg_reserve(&w->border, &cap_half, w->n_border + 1, sizeof *w->border) <
           0 ||
         vg_reserve(&w->border_patch, &cap_patch, w->n_border + 1,
@@ -214,7 +174,7 @@ static void add_slide(struct vg_wall *w, size_t p, uint32_t patch)
   uint32_t *s = w->slide[p];
 
   if (s[0] == patch || s[1] == patch) return;
-  if (s[1] != VG_NO_INDEX) block(w, p, VG_CAUSE_SLIDE);
+  if (s[1] != VG_NO_INDEX) limit(w, p, VG_CAUSE_SLIDE);
   if (patch < s[0]) {
     s[1] = s[0];
     s[0] = patch;
@@ -223,40 +183,34 @@ static void add_slide(struct vg_wall *w, size_t p, uint32_t patch)
   }
 }
 
-/* Finds the slide patches of a point, the start of its ring of wall faces, and
- * whether there is only one such ring. */
-static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
+/* Finds the slide patches of a point and the start of its ring of wall faces.
+ * All its triangles must be in one sector, and its walls in one ring. */
+static void visit_point(struct vg_wall *w, const struct build *b, size_t p)
 {
   const struct vg_mesh *m = w->surface;
-  size_t n_corner = 0, n_seen = 0;
-  uint32_t h, start = VG_NO_INDEX;
-  int is_open = 0;
+  const struct vg_sides *s = &b->sides;
+  const uint32_t *corner = s->corner + s->first[w->point[p]];
+  const uint32_t *end = s->corner + s->first[w->point[p] + 1];
+  const uint32_t sector = s->sector[vg_sides_corner(*corner, 0)];
+  int n_end = 0;
 
-  w->slide[p][0] = w->slide[p][1] = VG_NO_INDEX;
-  for (uint32_t i = r->first[p]; i < r->first[p + 1]; i++) {
-    uint32_t t = r->corner[i] / 3, patch = m->tri_patch[t];
+  w->slide[p][0] = w->slide[p][1] = w->start[p] = VG_NO_INDEX;
+  for (; corner < end; corner++) {
+    const uint32_t t = *corner / 3, patch = m->tri_patch[t];
+    uint32_t h;
 
-    if (r->role[patch] == SLIDE) add_slide(w, p, patch);
-    else if (r->role[patch] == INERT)
-      block(w, p, is_inner(m, t) ? VG_CAUSE_INNER : VG_CAUSE_SLIDE);
-    if (r->face[t] == VG_NO_INDEX) continue;
-    h = 3 * r->face[t] + r->corner[i] % 3;
-    n_corner++;
-    if (start == VG_NO_INDEX || (!is_open && w->opposite[h] == VG_NO_INDEX)) {
-      start = h;
-      is_open = w->opposite[h] == VG_NO_INDEX;
-    }
+    if (s->sector[vg_sides_corner(*corner, 0)] != sector)
+      limit(w, p, VG_CAUSE_SLIDE);
+    if (b->role[patch] == SLIDE) add_slide(w, p, patch);
+    else if (b->role[patch] == INERT)
+      limit(w, p, is_inner(m, t) ? VG_CAUSE_INNER : VG_CAUSE_SLIDE);
+    if (b->role[patch] != WALL) continue;
+    h = 3 * b->face[t] + *corner % 3;
+    if (w->start[p] == VG_NO_INDEX || (!n_end && w->opposite[h] == VG_NO_INDEX))
+      w->start[p] = h;
+    n_end += w->opposite[h] == VG_NO_INDEX;
   }
-  w->start[p] = h = start;
-  do {
-    n_seen++;
-    h = vg_wall_turn(w, h);
-  } while (h != VG_NO_INDEX && h != start && n_seen < n_corner);
-  if (n_seen != n_corner || (h != VG_NO_INDEX && h != start)) {
-    block(w, p, VG_CAUSE_SLIDE);
-  } else if (h == start && n_corner < r->first[p + 1] - r->first[p]) {
-    block(w, p, VG_CAUSE_SLIDE); /* Another sheet touches a closed ring. */
-  }
+  if (n_end > 1) limit(w, p, VG_CAUSE_SLIDE);
 }
 
 vg_status vg_wall_build(const struct vg_mesh *surface, const uint8_t *is_wall,
@@ -265,20 +219,22 @@ vg_status vg_wall_build(const struct vg_mesh *surface, const uint8_t *is_wall,
 {
   vg_status st = VG_OK;
   struct vg_wall w = VG_WALL_INIT;
-  struct rings r = { NULL, NULL, NULL, NULL, NULL };
+  struct build b = { NULL, NULL, NULL, VG_SIDES_INIT };
 
   assert(!out->point && !out->face);
   assert(is_wall || !surface->n_patch);
   w.surface = surface;
-  VG_TRY(find_roles(surface, is_wall, n_slide, slide, &r, err));
-  VG_TRY(number(&w, &r, err));
-  VG_TRY(collect_rings(&w, &r, err));
-  VG_TRY(find_opposites(&w, &r, err));
-  for (size_t p = 0; p < w.n_point; p++) visit_point(&w, &r, p);
+  VG_TRY(find_roles(surface, is_wall, n_slide, slide, &b, err));
+  VG_TRY(number(&w, &b, err));
+  VG_TRY(vg_sides_build(&b.sides, surface->n_point,
+                        (const double(*)[3])surface->point, surface->n_tri,
+                        (const uint32_t(*)[3])surface->tri, err));
+  VG_TRY(find_opposites(&w, &b, err));
+  for (size_t p = 0; p < w.n_point; p++) visit_point(&w, &b, p);
   *out = w;
   w = (struct vg_wall)VG_WALL_INIT;
 done:
   vg_wall_release(&w);
-  rings_release(&r);
+  build_release(&b);
   return st;
 }

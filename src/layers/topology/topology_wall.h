@@ -25,7 +25,7 @@ struct vg_wall {
   uint32_t *start;        /* [n_point] a corner at the point. In an open ring of
                              faces it is the corner of the first face,
                              counter-clockwise. */
-  uint8_t *blocked;       /* [n_point] as vg_topology.blocked. */
+  uint8_t *cause;         /* [n_point] as vg_column.cause. */
 };
 #define VG_WALL_INIT                                                           \
   {                                                                            \

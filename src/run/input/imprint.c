@@ -288,8 +288,9 @@ static vg_status refuse_beyond(const struct vg_boundary *b, const char *where,
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "patch %d%s%s, an inner surface, %s at (%g, %g, %g); the "
                  "generated boundary reaches from (%g, %g, %g) to "
-                 "(%g, %g, %g): make the farfield larger (farfield.size, "
-                 "farfield.lengths)%s",
+                 "(%g, %g, %g): make the farfield larger (table farfield: "
+                 "size or lengths; upstream, downstream or radial with kind "
+                 "mach)%s",
                  (int)p->id, *p->name ? " " : "", p->name, where, x[0], x[1],
                  x[2], lo[0], lo[1], lo[2], hi[0], hi[1], hi[2],
                  b->is_remeshed

@@ -31,15 +31,30 @@ static void row_name(FILE *to, const struct vg_mesh *surface,
   else fprintf(to, "  %5s %-16s", "all", "");
 }
 
-static void row_cover(FILE *to, const struct vg_mesh *surface,
+static void put_cover(FILE *to, const struct vg_mesh *surface,
                       const struct vg_patch_layers *w)
 {
   char count[32];
 
   row_name(to, surface, w);
-  fprintf(to, " %11s  %13.2f  %15.2f  %11.2f  %10.0f %6.1f %5.0f\n",
+  fprintf(to, " %11s  %13.2f  %15.2f  %11.2f  %10.0f %6.1f %5.0f",
           vg_text_count(w->n_face, count), w->full, w->uncompressed, w->any,
           w->level.min, w->level.mean, w->level.max);
+}
+
+static void row_cover(FILE *to, const struct vg_mesh *surface,
+                      const struct vg_patch_layers *w)
+{
+  put_cover(to, surface, w);
+  fputc('\n', to);
+}
+
+/* Where inner surfaces limit columns: also the coverage of the other faces. */
+static void row_cover_inner(FILE *to, const struct vg_mesh *surface,
+                            const struct vg_patch_layers *w)
+{
+  put_cover(to, surface, w);
+  fprintf(to, "  %22.2f\n", w->full_inside);
 }
 
 /* The most frequent cause of fewer or thinner layers. */
@@ -323,19 +338,23 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
             VG_AHEAD_FACES, r->n_many_faces);
 }
 
+#define COVER                                                                  \
+  "      faces  full layers %  at growth law %  any layer %  levels min  "     \
+  " mean   max"
+
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface)
 {
   const char *with_y_plus = "height: min      mean       max growth: mean    "
                             "max  y+: min   mean    max";
   const char *without = "height: min      mean       max growth: mean    max";
+  const int is_inner = s->all.cause[VG_CAUSE_INNER] > 0;
   char a[32], b[32];
 
   sizes(to, s);
   table(to, s, surface, "Coverage of the wall faces",
-        "      faces  full layers %  at growth law %  any layer %  levels min  "
-        " mean   max",
-        row_cover, is_any);
+        is_inner ? COVER "  full off free edges %" : COVER,
+        is_inner ? row_cover_inner : row_cover, is_any);
   table(to, s, surface, "Total height / growth-law height",
         "       mean  5th percentile   % of area >= 0.9  limited by",
         row_height, is_limited);
@@ -405,6 +424,8 @@ static json_t *wall_json(const struct vg_patch_layers *w)
   json_object_set_new(o, "points", vg_json_count(w->n_point));
   json_object_set_new(o, "bare_faces", vg_json_count(w->n_bare));
   json_object_set_new(o, "percent_full", vg_json_real(w->full));
+  json_object_set_new(o, "percent_full_off_free_edges",
+                      vg_json_real(w->full_inside));
   json_object_set_new(o, "percent_uncompressed", vg_json_real(w->uncompressed));
   json_object_set_new(o, "percent_any", vg_json_real(w->any));
   json_object_set_new(o, "height_over_growth_law",

@@ -26,7 +26,7 @@ exits 0
 says out "points of inner surfaces were moved by at most 0.0122 onto sharp edges"
 says out "curves along which they share edges with other surfaces: 1"
 for patch in 'FACE(11)' 'FACE(12)' wake wake_back; do
-  awk -v patch="$patch" '$2 == patch && NF == 9 { exit !($4 > 97) }' out ||
+  awk -v patch="$patch" '$2 == patch && NF > 8 { exit !($4 > 97 && $NF > 99) }' out ||
     fail "layers of $patch"
 done
 vanguard check mesh/m6.b8.ugrid
