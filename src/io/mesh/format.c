@@ -350,8 +350,10 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
   if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);
   st = kind ? vg_cad_read(path, kind, info->cad, info->model, out, &info->unit,
                           info->zones, err)
-            : f->read(path, out, &info->turned, err);
+     : f->read == read_gmsh ? vg_gmsh_read_volumes(path, out, info->zones, err)
+                            : f->read(path, out, &info->turned, err);
   if (st < 0) return st;
+  info->has_volumes = f->read == read_gmsh && info->zones && info->zones->n;
   info->format = f->suffix;
   info->n_cell = vg_mesh_n_cell(out);
   return VG_OK;

@@ -21,7 +21,8 @@ struct vg_read_info {
   struct vg_cad_model *model; /* in: empty; receives the model of a CAD file.
                                  NULL: the model is not kept */
   struct vg_cad_zones *zones; /* in: empty; receives the zones of a CAD file,
-                                 see vg_cad_read, or of a volume mesh in
+                                 see vg_cad_read, of a surface that Gmsh made
+                                 (vg_gmsh_read_volumes), or of a volume mesh in
                                  vg_surface_read; may be NULL */
   /* in: file with boundary conditions; NULL or "": STEM.mapbc, unless the mesh
    * is a surface and Vanguard wrote that file */
@@ -30,7 +31,8 @@ struct vg_read_info {
   struct vg_turned turned;     /* zero for formats without cells */
   struct vg_inner_faces inner; /* faces between cells */
   size_t n_cell;               /* number of cells in the file */
-  int has_mapbc;               /* a .mapbc was used */
+  int has_volumes;   /* the file names volumes that its surfaces bound */
+  int has_mapbc;     /* a .mapbc was used */
   int has_own_mapbc; /* STEM.mapbc was ignored because Vanguard wrote it */
   int unit;          /* enum vg_cad_unit, of the result; FILE: not known */
   enum vg_mapbc_layout layout; /* layout of the .mapbc */

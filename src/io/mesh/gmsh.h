@@ -14,6 +14,8 @@
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
+struct vg_cad_zones;
+
 /** Read a surface or a volume mesh; gzip'd input is accepted; text and binary
  * are distinguished by the content.
  *
@@ -23,16 +25,38 @@
  * and in a mesh without cells also the nodes that no face uses. The volume of
  * cells is made positive, and boundary faces are turned to point into them
  * (vg_mesh_turn).
- * @param out  unchanged on failure
- * VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_INPUT, VG_ERR_MEMORY; VG_ERR_UNSUPPORTED:
+ *
+ * A surface mesh of version 4 says which volumes its surfaces bound. Faces
+ * between two volumes become interfaces, in patches of their own, and each
+ * volume a zone with a point inside and the name of its physical group. Without
+ * such faces there are no zones.
+ * @param out    unchanged on failure
+ * @param zones  in: empty; receives the volumes of a surface. NULL: they are
+ *               ignored
+ * VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_MEMORY; VG_ERR_INPUT also: a surface bounds
+ * more than two volumes, or no point is found in a volume; VG_ERR_UNSUPPORTED:
  * versions 1, 3 and 4.0, elements of higher order, partitioned meshes. Threads:
- * re-entrant. O(n), or O(n log n) if nodes are not numbered in order. */
-vg_status vg_gmsh_read(const char *path, struct vg_mesh *out,
-                       struct vg_error *err);
+ * re-entrant. O(n), or O(n log n) if nodes are not numbered in order, and O(n)
+ * more for each volume of a surface. */
+vg_status vg_gmsh_read_volumes(const char *path, struct vg_mesh *out,
+                               struct vg_cad_zones *zones,
+                               struct vg_error *err);
+/** The same from bytes in memory. */
+vg_status vg_gmsh_parse_volumes(struct vg_input *in, struct vg_mesh *out,
+                                struct vg_cad_zones *zones,
+                                struct vg_error *err);
 
-/** vg_gmsh_read from bytes in memory. */
-vg_status vg_gmsh_parse(struct vg_input *in, struct vg_mesh *out,
-                        struct vg_error *err);
+static inline vg_status vg_gmsh_read(const char *path, struct vg_mesh *out,
+                                     struct vg_error *err)
+{
+  return vg_gmsh_read_volumes(path, out, NULL, err);
+}
+
+static inline vg_status vg_gmsh_parse(struct vg_input *in, struct vg_mesh *out,
+                                      struct vg_error *err)
+{
+  return vg_gmsh_parse_volumes(in, out, NULL, err);
+}
 
 /** Write a surface or a volume mesh: faces sorted by patch, then tetrahedra,
  * pyramids, prisms and hexahedra, numbered consecutively from 1. Patches

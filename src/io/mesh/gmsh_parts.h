@@ -18,6 +18,32 @@ struct vg_gmsh_group {
   int64_t surface, physical;
 };
 
+/* A volume and a surface that bounds it. */
+struct vg_gmsh_side {
+  int64_t surface, volume;
+};
+
+/** The physical group of a surface or volume; 0: none.
+ * @param group  [n] sorted by surface */
+int64_t vg_gmsh_physical(const struct vg_gmsh_group *group, size_t n,
+                         int64_t surface);
+
+/** Interfaces and zones of a surface mesh (vg_gmsh_read_volumes).
+ *
+ * @param face    of triangles [m->n_tri], of quadrilaterals [m->n_quad]
+ * @param group   [n_group] of the volumes, sorted
+ * @param side    [n_side] sorted here
+ * @param zones   in: empty
+ * VG_ERR_INPUT, VG_ERR_MEMORY; VG_ERR_UNSUPPORTED: no number is left for an
+ * interface. */
+vg_status vg_gmsh_set_volumes(struct vg_mesh *m,
+                              struct vg_gmsh_group *const face[2],
+                              size_t n_group, const struct vg_gmsh_group *group,
+                              size_t n_side, struct vg_gmsh_side *side,
+                              size_t n_name, const struct vg_gmsh_name *name,
+                              const char *path, struct vg_cad_zones *zones,
+                              struct vg_error *err);
+
 /** Create the patches of a mesh. Their ids are the physical groups if any face
  * has one, otherwise the surfaces.
  *

@@ -55,6 +55,9 @@ struct reader {
   /* Groups of the surfaces and of the volumes, sorted by surface or volume. */
   struct vg_gmsh_group *group[2];
   size_t n_group[2], cap_group[2];
+  struct vg_gmsh_side *side;  /* surfaces of the volumes */
+  struct vg_cad_zones *zones; /* receives the volumes of a surface; or NULL */
+  size_t n_side, cap_side;
   struct numbered *node; /* [n_point] sorted by tag */
   int is_run; /* tags are consecutive: first_tag, first_tag + 1, ... */
   int seen_nodes;
@@ -179,6 +182,23 @@ static vg_status skip_ints(struct reader *r, int64_t n, const char *what,
   return st;
 }
 
+static vg_status read_sides(struct reader *r, int64_t volume, int64_t n,
+                            struct vg_error *err)
+{
+  vg_status st = check_count(r, n, 0, 1, "a volume", err);
+  int64_t v;
+
+  if (st < 0) return st;
+  if (vg_reserve(&r->side, &r->cap_side, r->n_side + (size_t)n,
+                 sizeof *r->side))
+    return vg_fail_memory(err, "the volumes");
+  for (; n > 0 && st == VG_OK; n--) {
+    st = read_ints(r, 1, &v, "a volume", err);
+    r->side[r->n_side++] = (struct vg_gmsh_side){ llabs(v), volume };
+  }
+  return st;
+}
+
 static vg_status read_entity(struct reader *r, int dimension,
                              struct vg_error *err)
 {
@@ -195,7 +215,8 @@ static vg_status read_entity(struct reader *r, int dimension,
   VG_TRY(skip_ints(r, n > 0 ? n - 1 : n, what, err));
   if (dimension) {
     VG_TRY(read_sizes(r, 1, &n, what, err));
-    VG_TRY(skip_ints(r, n, what, err));
+    VG_TRY(dimension == 3 ? read_sides(r, tag, n, err)
+                          : skip_ints(r, n, what, err));
   }
   if (dimension < 2) return VG_OK;
   if (vg_reserve(&r->group[k], &r->cap_group[k], r->n_group[k] + 1,
@@ -232,22 +253,6 @@ static vg_status read_entities(struct reader *r, struct vg_error *err)
       qsort(r->group[k], r->n_group[k], sizeof **r->group, by_surface);
 done:
   return st;
-}
-
-static int64_t physical_of(const struct reader *r, int dimension,
-                           int64_t surface)
-{
-  const struct vg_gmsh_group *group = r->group[dimension - 2];
-  const size_t n = r->n_group[dimension - 2];
-  size_t lo = 0, hi = n;
-
-  while (lo < hi) {
-    size_t mid = lo + (hi - lo) / 2;
-
-    if (group[mid].surface < surface) lo = mid + 1;
-    else hi = mid;
-  }
-  return lo < n && group[lo].surface == surface ? group[lo].physical : 0;
 }
 
 /* --- nodes --- */
@@ -495,8 +500,10 @@ static vg_status read_block_4(struct reader *r, struct vg_error *err)
   VG_TRY(check_count(r, n, n_value, 0, "elements", err));
   VG_TRY(reserve_elements(r, t->element, n, err));
   if (head[0] == 2 || head[0] == 3)
-    group = (struct vg_gmsh_group){ head[1],
-                                    physical_of(r, (int)head[0], head[1]) };
+    group = (struct vg_gmsh_group){
+      head[1],
+      vg_gmsh_physical(r->group[head[0] - 2], r->n_group[head[0] - 2], head[1])
+    };
   for (int64_t i = 0; i < n; i++) {
     VG_TRY(read_sizes(r, n_value, v, "the elements", err));
     VG_TRY(take_element(r, t, v[0], v + 1, group, err));
@@ -752,15 +759,20 @@ static vg_status finish(struct reader *r, struct vg_error *err)
   VG_TRY(
     vg_gmsh_set_zones(m, r->of + TET, r->n_name, r->name, r->in->path, err));
   if (!has_cells) vg_mesh_keep_boundary(m);
+  if (!has_cells && r->zones)
+    VG_TRY(vg_gmsh_set_volumes(m, r->of + TRI, r->n_group[1], r->group[1],
+                               r->n_side, r->side, r->n_name, r->name,
+                               r->in->path, r->zones, err));
   VG_TRY(vg_mesh_turn(m, NULL, err));
 done:
   return st;
 }
 
-vg_status vg_gmsh_parse(struct vg_input *in, struct vg_mesh *out,
-                        struct vg_error *err)
+vg_status vg_gmsh_parse_volumes(struct vg_input *in, struct vg_mesh *out,
+                                struct vg_cad_zones *zones,
+                                struct vg_error *err)
 {
-  struct reader r = { .in = in };
+  struct reader r = { .in = in, .zones = zones };
   vg_status st = read_sections(&r, err);
 
   if (st == VG_OK) st = finish(&r, err);
@@ -770,16 +782,17 @@ vg_status vg_gmsh_parse(struct vg_input *in, struct vg_mesh *out,
   for (int k = 0; k < 2; k++) free(r.group[k]);
   free(r.name);
   free(r.node);
+  free(r.side);
   return st;
 }
 
-vg_status vg_gmsh_read(const char *path, struct vg_mesh *out,
-                       struct vg_error *err)
+vg_status vg_gmsh_read_volumes(const char *path, struct vg_mesh *out,
+                               struct vg_cad_zones *zones, struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
   vg_status st = vg_input_open(path, &in, err);
 
-  if (st == VG_OK) st = vg_gmsh_parse(&in, out, err);
+  if (st == VG_OK) st = vg_gmsh_parse_volumes(&in, out, zones, err);
   vg_input_release(&in);
   return st;
 }

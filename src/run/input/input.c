@@ -394,7 +394,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_display *show,
   /* The message of the library has less detail. */
   if (st == VG_ERR_STOPPED) return vg_display_stopped(show, err);
   if (st < 0) return st;
-  r->has_cells = info.n_cell > 0;
+  r->has_cells = info.n_cell > 0 || info.has_volumes;
   if (info.unit) r->unit = info.unit;
   r->side = side_of(info.format);
   if (info.n_cell)

@@ -159,7 +159,8 @@ struct vg_read {
                              known. */
   int is_section;         /* 1: the surface is the strip of a plane section
                              (run/section/section_surface.h). */
-  int has_cells;          /* 1: the surface is the boundary of a volume mesh. */
+  int has_cells;          /* 1: the surface is the boundary of a volume mesh, or
+                             of the volumes that its file names. */
   struct vg_notes *notes; /* Notes of the problem; borrowed. */
 };
 

@@ -195,3 +195,60 @@ duct thin "${thin[@]}"
 vanguard check thin.stl --flow internal --zone-interfaces plate
 says out "zone plate is thin, with a mean width of 0.0096"
 says out "hmin, the smallest edge, makes them larger"
+
+# --- volumes of a surface of Gmsh ----------------------------------------------------
+
+# Two unit cubes on each other: surfaces 1 to 11, of which 11 is between them. The
+# second volume has the surfaces $1.
+cubes() {
+  awk -v upper="$1" '
+    BEGIN {
+      print "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2"
+      print "3 1 \"lower\"\n3 2 \"upper\"\n$EndPhysicalNames"
+      print "$Entities\n0 0 11 2"
+      for (i = 1; i <= 11; i++) print i, 0, 0, 0, 1, 1, 2, 0, 0
+      print "1 0 0 0 1 1 1 1 1 6 1 2 3 4 5 11"
+      print "2 0 0 1 1 1 2 1 2", split(upper, s), upper "\n$EndEntities"
+      print "$Nodes\n1 12 1 12\n2 1 0 12"
+      for (i = 1; i <= 12; i++) print i
+      for (k = 0; k < 3; k++) print "0 0 " k "\n1 0 " k "\n1 1 " k "\n0 1 " k
+      print "$EndNodes\n$Elements\n11 22 1 22"
+      quad(1, 1, 4, 3, 2)
+      quad(11, 5, 6, 7, 8)
+      quad(10, 9, 10, 11, 12)
+      for (l = 0; l < 2; l++)
+        for (j = 0; j < 4; j++) {
+          a = 4 * l + j + 1
+          b = 4 * l + (j + 1) % 4 + 1
+          quad(4 * l + 2 + j, a, b, b + 4, a + 4)
+        }
+      print "$EndElements"
+    }
+    function quad(s, a, b, c, d) {
+      print 2, s, 2, 2
+      print ++e, a, b, c
+      print ++e, a, c, d
+    }' >cubes.msh
+}
+cubes "6 7 8 9 10 -11"
+vanguard mesh cubes.msh --quiet --hmax 0.3 --remesh-surface yes --write b8.ugrid \
+  --out cubes
+exits 0
+says out "11 is an interface"
+vanguard check cubes/cubes.b8.ugrid
+exits 0
+for zone in " fluid .* 1 .* lower" " fluid .* 1 .* upper"; do
+  grep -q -- "$zone" out || fail "no zone $zone"
+done
+# A surface between two volumes that the second one does not name is a wall.
+cubes "6 7 8 9 10"
+vanguard mesh cubes.msh --quiet --flow internal --hmax 0.3 --out walls
+exits 1
+lacks out "is an interface"
+says out "non-manifold edges: 4"
+# Without one of its sides, no point in a volume is found.
+cubes "6 7 8 -11"
+vanguard mesh cubes.msh --quiet --hmax 0.3 --out no
+exits 1
+says err "the surfaces of volume 2 are not closed"
+absent no
