@@ -41,9 +41,47 @@ struct vg_point_height *vg_point_height(const struct vg_point_heights *h,
               : NULL;
 }
 
-/* A .surf may have a first height at each point. The heights are looked up by
- * coordinates, since repairs renumber points. */
-vg_status vg_read_heights(struct vg_read *r, struct vg_error *err)
+/* Patches with the flag of transparent surfaces, with layers (below 0) or
+ * without, are sheets. */
+static void mark_sheets(struct vg_read *r, const struct vg_aflr *a)
+{
+  struct vg_mesh *m = &r->surface;
+
+  for (size_t i = 0; i < a->n; i++) {
+    const int32_t flag = a->patch[i].flag;
+    const size_t at = vg_mesh_find_patch(m, a->patch[i].id);
+
+    if (flag == VG_AFLR_NONE || abs(flag) < 4 || abs(flag) > 6 ||
+        at == SIZE_MAX)
+      continue;
+    m->patch[at].is_sheet = 1;
+    vg_note(r->notes,
+            "patch %d is a sheet by the flag %d of the .surf, unless a list or "
+            "the table `patches` gives it another role",
+            (int)a->patch[i].id, (int)flag);
+  }
+}
+
+/* Heights are looked up by coordinates, since repairs renumber points. */
+static vg_status take_heights(struct vg_read *r, const struct vg_mesh *m,
+                              const struct vg_aflr *a, struct vg_error *err)
+{
+  r->heights.item = vg_alloc(a->n_point, sizeof *r->heights.item);
+  if (!r->heights.item) return vg_fail_memory(err, "the heights of a .surf");
+  for (size_t i = 0; i < a->n_point; i++) {
+    struct vg_point_height *to = &r->heights.item[r->heights.n];
+
+    if (!(a->spacing[i] > 0)) continue;
+    for (int k = 0; k < 3; k++) to->x[k] = vg_units_of_file(r, m->point[i][k]);
+    to->first = vg_units_of_file(r, a->spacing[i]);
+    to->friction = -1;
+    r->heights.n++;
+  }
+  vg_point_heights_sort(&r->heights);
+  return VG_OK;
+}
+
+vg_status vg_read_surf_settings(struct vg_read *r, struct vg_error *err)
 {
   const char *path = r->files.surface;
   struct vg_mesh m = VG_MESH_INIT;
@@ -53,25 +91,12 @@ vg_status vg_read_heights(struct vg_read *r, struct vg_error *err)
 
   if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
   if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *r->files.front ||
-      *r->files.d3m || !r->settings.layer.from_files)
+      *r->files.d3m)
     return VG_OK;
   VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
-  if (!a.spacing) goto done;
-  r->heights.item = vg_alloc(a.n_point, sizeof *r->heights.item);
-  if (!r->heights.item) {
-    st = vg_fail_memory(err, "the heights of a .surf");
-    goto done;
-  }
-  for (size_t i = 0; i < a.n_point; i++) {
-    struct vg_point_height *to = &r->heights.item[r->heights.n];
-
-    if (!(a.spacing[i] > 0)) continue;
-    for (int k = 0; k < 3; k++) to->x[k] = vg_units_of_file(r, m.point[i][k]);
-    to->first = vg_units_of_file(r, a.spacing[i]);
-    to->friction = -1;
-    r->heights.n++;
-  }
-  vg_point_heights_sort(&r->heights);
+  mark_sheets(r, &a);
+  if (a.spacing && r->settings.layer.from_files)
+    st = take_heights(r, &m, &a, err);
 done:
   vg_mesh_release(&m);
   vg_aflr_release(&a);

@@ -31,6 +31,16 @@ static int has_wake_sheet(const struct vg_settings *s)
   return has;
 }
 
+/* Sheets of the file, or those made of wakes. */
+static int has_sheet(const struct vg_mesh *m)
+{
+  int has = 0;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    has |= vg_patch_is_marked_sheet(&m->patch[i]);
+  return has;
+}
+
 static int wants_inner(const struct vg_settings *s)
 {
   return *s->baffles || *s->sheets || *s->zone_interfaces || has_role(s) ||
@@ -39,7 +49,8 @@ static int wants_inner(const struct vg_settings *s)
 
 int vg_boundary_wants_inner(const struct vg_boundary *b)
 {
-  return wants_inner(&b->read->settings) || vg_mesh_has_interfaces(&b->surface);
+  return wants_inner(&b->read->settings) ||
+         vg_mesh_has_interfaces(&b->surface) || has_sheet(&b->surface);
 }
 
 int vg_read_has_solid_zones(const struct vg_read *r)
@@ -50,7 +61,7 @@ int vg_read_has_solid_zones(const struct vg_read *r)
 const char *vg_read_keeps_triangles(const struct vg_read *r)
 {
   return wants_inner(&r->settings) || vg_read_has_solid_zones(r) ||
-             vg_mesh_has_interfaces(&r->surface)
+             vg_mesh_has_interfaces(&r->surface) || has_sheet(&r->surface)
          ? "inner surfaces"
          : NULL;
 }
@@ -76,7 +87,7 @@ const char *vg_inner_source(const struct vg_settings *s, char *text,
     if (from[i].is)
       n += (size_t)snprintf(text + n, size - n, "%s%s%.40s", n ? ", " : "",
                             from[i].name, from[i].list);
-  if (!n) snprintf(text, size, "zones of the file");
+  if (!n) snprintf(text, size, "the file");
   return text;
 }
 
@@ -144,7 +155,7 @@ vg_status vg_inner_roles(const struct vg_settings *s, const struct vg_mesh *m,
     st = give(m, on, s->patch[i].role, "the table patches", role, from, err);
   }
   for (size_t i = 0; i < m->n_patch; i++) {
-    if (role[i] == VG_PATCH_AUTO && vg_patch_is_wake(&m->patch[i]))
+    if (role[i] == VG_PATCH_AUTO && vg_patch_is_marked_sheet(&m->patch[i]))
       role[i] = VG_PATCH_SHEET;
     if (role[i] == VG_PATCH_WALL) role[i] = VG_PATCH_AUTO;
   }

@@ -767,7 +767,7 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
   VG_TRY(vg_read_add_wake_patches(r, err));
   VG_TRY(apply_aflr(r, r->files.tags, 0, err));
   VG_TRY(apply_aflr(r, r->files.aflr, 1, err));
-  VG_TRY(vg_read_heights(r, err));
+  VG_TRY(vg_read_surf_settings(r, err));
   /* All layer settings are in the settings now, except heights by point. */
   if (!r->heights.n) r->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(r, err));

@@ -20,7 +20,8 @@ vg_status vg_units_end(struct vg_read *r, struct vg_comm *comm,
 /** A length of the surface file in the unit of the mesh. */
 double vg_units_of_file(const struct vg_read *r, double x);
 
-/** Reads first heights at the points of a .surf into r->heights. (heights.c) */
-vg_status vg_read_heights(struct vg_read *r, struct vg_error *err);
+/** Of a .surf: reads first heights at its points into r->heights, and marks
+ * transparent patches of r->surface as sheets. (heights.c) */
+vg_status vg_read_surf_settings(struct vg_read *r, struct vg_error *err);
 
 #endif

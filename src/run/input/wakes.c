@@ -364,7 +364,7 @@ static vg_status add_probes(struct body *b, struct vg_error *err)
 
 /* --- sheets --------------------------------------------------------------- */
 
-int vg_patch_is_wake(const struct vg_patch *p)
+int vg_patch_is_marked_sheet(const struct vg_patch *p)
 {
   return p->is_sheet == 1 && p->inner == VG_INNER_NOT;
 }
@@ -406,15 +406,17 @@ vg_status vg_read_add_wake_patches(struct vg_read *r, struct vg_error *err)
   return st;
 }
 
-/* The patch of the current row: wakes have theirs in the order of the rows. */
+/* The patch of the current row: wakes have theirs in the order of the rows,
+ * after the sheets of the file. */
 static size_t patch_of(const struct body *b)
 {
+  const struct vg_read_wakes *w = &b->read->wakes;
   const struct vg_mesh *m = &b->read->surface;
-  size_t left = 0, at = 0;
+  size_t left = 0, at = m->n_patch;
 
-  for (const struct vg_wake_row *row = b->read->wakes.row; row < b->row; row++)
+  for (const struct vg_wake_row *row = b->row; row < w->row + w->n; row++)
     left += row->kind == VG_WAKE_SHEET;
-  while (!vg_patch_is_wake(&m->patch[at]) || left-- > 0) at++;
+  while (left > 0) left -= (size_t)vg_patch_is_marked_sheet(&m->patch[--at]);
   return at;
 }
 

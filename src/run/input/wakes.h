@@ -27,7 +27,8 @@ vg_status vg_read_place_wakes(struct vg_read *r, struct vg_error *err);
 
 void vg_read_wakes_release(struct vg_read_wakes *w);
 
-/** 1 for a sheet that the table `wakes` has added to the surface. */
-int vg_patch_is_wake(const struct vg_patch *p);
+/** 1 for a sheet that the table `wakes` has added to the surface, or that its
+ * file marks (vg_read_surf_settings). */
+int vg_patch_is_marked_sheet(const struct vg_patch *p);
 
 #endif

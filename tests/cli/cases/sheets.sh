@@ -442,3 +442,28 @@ absent lost.sheets
 vanguard mesh disk.stl --flow internal --sheets disk --weld 1e-6
 exits 1
 says err "inner surfaces (sheets disk) cannot be combined with weld"
+
+# A transparent surface of AFLR3: a unit cube with a sheet by its flag.
+awk 'BEGIN {
+  print 2, 6, 12
+  for (i = 0; i < 8; i++) print i % 2, int(i / 2) % 2, int(i / 4)
+  print ".3 .3 .5\n.7 .3 .5\n.3 .7 .5\n.7 .7 .5"
+  print "9 10 12 2 7 -5\n9 12 11 2 7 -5"
+  print "1 3 4 2 1 7 1\n5 6 8 7 1 7 1\n1 2 6 5 1 7 1"
+  print "3 7 8 4 1 7 1\n1 5 7 3 1 7 1\n2 4 8 6 1 7 1"
+}' >flags.surf
+vanguard mesh flags.surf --flow internal --quiet --hmax 0.2 --remesh-surface yes \
+  --write b8.ugrid --out flags
+exits 0
+says out "patch 2 is a sheet by the flag -5 of the .surf"
+says out "inner surfaces: 16 triangles with fluid on both sides"
+[ -e flags/flags.sheets ] || fail "no flags.sheets"
+vanguard mesh flags.surf --flow internal --quiet --hmax 0.2 --remesh-surface yes \
+  --baffles 2 --write b8.ugrid --out baffle
+exits 0
+says out "inner surfaces: 16 triangles with fluid on both sides"
+absent baffle/flags.sheets
+vanguard convert -q flags.surf flags.stl
+exits 0
+grep -c 'outer loop' flags.stl >out
+says out 14
