@@ -20,6 +20,7 @@ struct plane {
   double (*p)[2], (*add)[2];
   uint32_t (*edge)[2], (*tri)[3];
   struct vg_error err;
+  int splits;
 };
 
 struct law {
@@ -116,7 +117,9 @@ static void circle(struct plane *s, double x, double y, double r, int n,
 
 static vg_status run(struct plane *s, const struct law *l)
 {
-  const struct vg_planar_law law = { .at = size_of, .user = (void *)l };
+  const struct vg_planar_law law = { .at = size_of,
+                                     .user = (void *)l,
+                                     .splits = s->splits };
 
   return vg_planar_mesh(s->n, (const double(*)[2])s->p, s->n_edge,
                         (const uint32_t(*)[2])s->edge, &law, &s->n_new, &s->add,
@@ -332,18 +335,25 @@ static void adds_points_in_narrow_strips(void **state)
 {
   static const double strip[6][2] = { { 0, 0 },   { 2, 0 },   { 4, -0.2 },
                                       { 4, 1.2 }, { 2, 0.8 }, { 0, 0.6 } };
-  const struct law l = { { 0, 0 }, 2, 0, 2 };
-  struct plane s;
+  double least[2];
 
   (void)state;
-  begin(&s);
-  for (int i = 0; i < 6; i++) put(&s, strip[i][0], strip[i][1]);
-  close_from(&s, 0);
-  assert_int_equal(run(&s, &l), VG_OK);
-  check_topology(&s);
-  assert_true(s.n_new > 0);
-  assert_true(measure(&s, &l).angle_min_deg > 20);
-  end(&s);
+  for (int splits = 0; splits < 2; splits++) {
+    const struct law l = { { 0, 0 }, 2, 0, 2 };
+    struct plane s;
+
+    begin(&s);
+    s.splits = splits;
+    for (int i = 0; i < 6; i++) put(&s, strip[i][0], strip[i][1]);
+    close_from(&s, 0);
+    assert_int_equal(run(&s, &l), VG_OK);
+    check_topology(&s);
+    assert_true(splits == (s.n_new > 0));
+    least[splits] = measure(&s, &l).angle_min_deg;
+    end(&s);
+  }
+  assert_true(least[0] < 17);
+  assert_true(least[1] > least[0] + 2);
 }
 
 static void follows_a_ragged_boundary(void **state)
@@ -477,7 +487,9 @@ static int is_over(void *user)
 static void stops_when_asked(void **state)
 {
   struct patience p = { .l = { { 0 }, 0.005, 0, 1 }, .most = SIZE_MAX };
-  const struct vg_planar_law law = { size_counted, &p, { is_over, &p } };
+  const struct vg_planar_law law = { .at = size_counted,
+                                     .user = &p,
+                                     .stop = { is_over, &p } };
   const struct law border = { { 0 }, 0.05, 0, 1 };
   size_t n_size = 0, n_asked = 0;
 

@@ -190,8 +190,9 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
                           size_t n, const double (*disc)[2], uint32_t first,
                           int inward, uint32_t patch, struct vg_error *err)
 {
-  const struct vg_chart chart = { { size_on_disc, (void *)s, s->size->stop },
-                                  to_sphere };
+  const struct vg_chart chart = {
+    { .at = size_on_disc, .user = (void *)s, .stop = s->size->stop }, to_sphere
+  };
   const int swap = inward ? s->side > 0 : s->side < 0;
   uint32_t *id = vg_alloc(n, sizeof *id);
   vg_status st;

@@ -18,6 +18,8 @@ struct vg_planar_law {
   double (*at)(void *user, const double x[2]);
   void *user;
   struct vg_stop stop; /* Polled regularly. */
+  int splits; /* 1: points are added where angles stay small, closer than the
+                 target edge length */
 };
 
 /** Triangulate a plane region bounded by closed loops of segments.

@@ -23,8 +23,8 @@ static inline int vg_tri2_stops(const struct vg_planar_law *law, size_t k)
 int vg_tri2_fill(struct vg_tri2 *t, const struct vg_planar_law *law);
 
 /** Smooth the points from first_free on in at most n_sweep sweeps, then raise
- * small angles, for which points are added. The triangulation stays Delaunay.
- * Returns 0, 1 or -1 as vg_tri2_fill. */
+ * small angles, for which points are added if the law says so. The
+ * triangulation stays Delaunay. Returns 0, 1 or -1 as vg_tri2_fill. */
 int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep,
                     const struct vg_planar_law *law);
 

@@ -223,7 +223,9 @@ vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
 {
   vg_status st;
   struct frame f = { .size = size, .flatness = flatness };
-  const struct vg_planar_law law = { size_in_plane, &f, size->stop };
+  const struct vg_planar_law law = { .at = size_in_plane,
+                                     .user = &f,
+                                     .stop = size->stop };
   struct local l = { 0 };
   size_t n_new = 0, n_tri = 0;
   double(*add)[2] = NULL;

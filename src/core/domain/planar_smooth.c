@@ -281,7 +281,7 @@ int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep,
     const int bad = lift(t, first_free, law);
     int more;
 
-    if (bad || k == N_SPLIT) return bad;
+    if (bad || !law->splits || k == N_SPLIT) return bad;
     more = split(t);
     if (more <= 0) return more;
   }

@@ -337,8 +337,9 @@ static vg_status add_sheet(struct surface *s, size_t i, int h, uint32_t patch,
   const struct curve *rim0 = &s->rim[i][h], *rim1 = &s->rim[i + 1][h];
   const size_t room = out->n + back->n + rim0->n + rim1->n;
   struct sheet c = sheet_of(s, i, h);
-  const struct vg_chart chart = { { size_in_plane, &c, s->size->stop },
-                                  from_plane };
+  const struct vg_chart chart = {
+    { .at = size_in_plane, .user = &c, .stop = s->size->stop }, from_plane
+  };
   struct loop l = { 0, vg_alloc(room, sizeof *l.p),
                     vg_alloc(room, sizeof *l.id) };
   vg_status st = VG_OK;

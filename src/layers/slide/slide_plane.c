@@ -181,7 +181,9 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
   double(*add)[2] = NULL;
   uint32_t(*tri)[3] = NULL;
   size_t n_add = 0, n_tri = 0;
-  const struct vg_planar_law sizes = { .at = vg_slide_size, .user = law };
+  const struct vg_planar_law sizes = { .at = vg_slide_size,
+                                       .user = law,
+                                       .splits = 1 };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = vg_planar_mesh(r->n, (const double(*)[2])r->p, loops->n,
                                 (const uint32_t(*)[2])r->edge, &sizes, &n_add,

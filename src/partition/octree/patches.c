@@ -234,8 +234,9 @@ static vg_status fill_patch(const struct mesher *m, size_t i, struct piece *q,
   struct plane pl = { m, &m->p->patch[i],
                       vg_octants_place(m->t, m->p->patch[i].axis,
                                        m->p->patch[i].at) };
-  const struct vg_planar_law law = { size_in_plane, &pl,
-                                     vg_engine_stop(m->engine) };
+  const struct vg_planar_law law = { .at = size_in_plane,
+                                     .user = &pl,
+                                     .stop = vg_engine_stop(m->engine) };
   const size_t n = walk_border(m, i, NULL);
   uint32_t(*edge)[2] = vg_alloc(n, sizeof *edge);
   double(*y)[2] = vg_alloc(2 * n, sizeof *y);
