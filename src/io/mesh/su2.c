@@ -278,6 +278,25 @@ static void put_words(struct vg_output *out, const char *key, size_t n,
   vg_output_text(out, " )\n");
 }
 
+/* Pairs of markers: the two sides of doubled interfaces, which follow each
+ * other among the patches, and then those of other interfaces. */
+static vg_status put_pairs(struct vg_output *out, const struct vg_zone_parts *p,
+                           const char (*word)[VG_PATCH_WORD],
+                           struct vg_error *err)
+{
+  char(*pair)[VG_PATCH_WORD] = vg_alloc(p->n_patch, sizeof *pair);
+  size_t n = 0;
+
+  if (!pair) return vg_fail_memory(err, "the names of the markers");
+  for (size_t i = 0; i < p->n_patch; i++)
+    if (i >= p->m->n_patch || vg_patch_is_sliding(&p->m->patch[i]))
+      memcpy(pair[n++], word[i], VG_PATCH_WORD);
+  put_words(out, "MARKER_ZONE_INTERFACE", n, (const char(*)[VG_PATCH_WORD])pair,
+            "");
+  free(pair);
+  return VG_OK;
+}
+
 /* The lines that SU2's configuration needs, as comments. */
 static vg_status put_zones_head(struct vg_output *out,
                                 const struct vg_zone_parts *p,
@@ -294,8 +313,7 @@ static vg_status put_zones_head(struct vg_output *out,
                       "configuration of SU2:\n% MULTIZONE_MESH= YES\n");
   put_words(out, "CONFIG_LIST", p->m->n_zone,
             (const char(*)[VG_PATCH_WORD])zone, ".cfg");
-  put_words(out, "MARKER_ZONE_INTERFACE", 2 * p->n_pair,
-            (const char(*)[VG_PATCH_WORD])word + p->m->n_patch, "");
+  VG_TRY(put_pairs(out, p, (const char(*)[VG_PATCH_WORD])word, err));
   vg_output_format(out, "NZONE= %zu\n", p->m->n_zone);
 done:
   free(word);

@@ -82,7 +82,9 @@ says out "interface rot_back)"
 vanguard convert -q o_two/two.b8.ugrid all.zones.su2 --double-interfaces '*'
 exits 0
 head -5 all.zones.su2 >out
-lacks out "MARKER_ZONE_INTERFACE"
+grep '^% MARKER_ZONE_INTERFACE= ' all.zones.su2 >out
+says out "rot, rot_back"
+says out "in, in_back"
 vanguard convert -q o_two/two.b8.ugrid slide --form foam --double-interfaces 'rot*'
 exits 0
 grep -A5 '^ *rot$' slide.openfoam/constant/polyMesh/boundary >out
