@@ -75,9 +75,12 @@ static int take_transform(const struct vg_periodic_row *row,
 static const char *name_of(const struct vg_mesh *m, const struct vg_periodic *p,
                            char *text, size_t size)
 {
-  snprintf(text, size, "patches %d (%s) and %d (%s)", (int)p->patch,
-           m->patch[vg_mesh_find_patch(m, p->patch)].name, (int)p->image,
-           m->patch[vg_mesh_find_patch(m, p->image)].name);
+  const char *a = m->patch[vg_mesh_find_patch(m, p->patch)].name;
+  const char *b = m->patch[vg_mesh_find_patch(m, p->image)].name;
+
+  snprintf(text, size, "patches %d%s%s%s and %d%s%s%s", (int)p->patch,
+           *a ? " (" : "", a, *a ? ")" : "", (int)p->image, *b ? " (" : "", b,
+           *b ? ")" : "");
   return text;
 }
 

@@ -66,7 +66,7 @@ refused() {
   exits 1
 }
 refused "patch image angle ux uy uz" "3 4 52 0 0 1"
-says err "patches 3 () and 4 () do not match by the rotation by 52 degrees"
+says err "patches 3 and 4 do not match by the rotation by 52 degrees"
 says err "the largest distance is 0.00997, at ("
 refused "patch image tx ty tz" "3 5 1 0 0"
 says err "the largest distance is 1.16, at ("
