@@ -175,11 +175,13 @@ static double growth_of(const double (*x)[3], int n)
 
 /* Height of a column relative to that of all its levels at the growth law. */
 static double share_of(const struct vg_growth_law *law,
-                       const struct vg_column *c, double height)
+                       const struct vg_column *c)
 {
-  double d[VG_LEVELS_MAX + 1];
+  double d[VG_LEVELS_MAX + 1], height;
 
   if (c->n >= c->n_wanted && !(c->cap < law->cap)) return 1;
+  vg_growth_law_heights(law, c->cap, c->n, d);
+  height = d[c->n];
   vg_growth_law_heights(law, INFINITY, c->n_wanted, d);
   return height < d[c->n_wanted] ? height / d[c->n_wanted] : 1;
 }
@@ -208,7 +210,7 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
     w->asked[i] = asked;
   }
   if (total < w->total[i]) w->total[i] = total;
-  share = share_of(&j->columns->law[col->law], col, d[col->n]);
+  share = share_of(&j->columns->law[col->law], col);
   if (share < w->share[i]) w->share[i] = share;
   if (growth > w->growth[i]) w->growth[i] = growth;
 }

@@ -71,6 +71,7 @@ static void add_share(const struct patches_job *j, size_t f, struct tally *t)
   vg_cross(a, b, n);
   area = 0.5 * vg_norm(n);
   for (int k = 0; k < 3; k++) share += j->w->share[j->field[v[k]]] / 3;
+  assert(share >= 0 && share < 1 + 1e-9);
   t->area += area;
   t->p.share_mean += area * share;
   if (share >= SHARE_WHOLE) t->area_whole += area;
