@@ -240,7 +240,7 @@ static double meets(const double o[3], const double d[3], const double a[3],
   return vg_dot(v, q) / det;
 }
 
-/* Triangle i of face f, a half of a quadrilateral; 0: there is none. */
+/* Triangle i of face f, a half of a quadrilateral; 0: it has none. */
 static int corners(const struct vg_mesh *m, size_t f, int i, const double *x[3])
 {
   const uint32_t *q = f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
