@@ -47,11 +47,11 @@ void vg_outline_release(struct vg_outline *c);
  * count; or by 60 degrees, and it is that at one of them, as on both sides of a
  * short base. A coarse polygon also turns at the points of a nose, but at all
  * of them. Few points show no curve: of 8 points or less, and between corners
- * that are at most 4 intervals apart, all points that turn by
- * more than 0.6 degrees are corners. The
- * ends of an interval are corners if the curve would be farther from its
- * segment than 0.3 of its length. Arithmetic without libm other than sqrt.
- * O(n), but for each repetition after the last rule. VG_ERR_MEMORY. */
+ * that are at most 4 intervals apart, all points that turn by more than 0.6
+ * degrees are corners. The ends of an interval are corners if the curve would
+ * be farther from its segment than 0.3 of its length. Arithmetic without libm
+ * other than sqrt. O(n), but for each repetition after the last rule.
+ * VG_ERR_MEMORY. */
 vg_status vg_outline_new(size_t n, const double (*x)[2], struct vg_outline *out,
                          struct vg_error *err);
 

@@ -198,7 +198,8 @@ static vg_status compose(struct copy *c, struct vg_mesh *m, uint32_t patch,
     return vg_fail_memory(err, "the periodic patches");
   }
   for (size_t t = 0; t < s->n_tri; t++)
-    if (!s->is_gone[t]) add_face(&l, s->tri[t], s->patch[t], s->origin[t]);
+    if (!s->tri[t].is_gone)
+      add_face(&l, s->tri[t].point, s->tri[t].patch, s->tri[t].origin);
   for (uint32_t t = 0; t < m->n_tri; t++) {
     const uint32_t *v = m->tri[t];
 

@@ -9,7 +9,7 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 #include "core/periodic/copy_parts.h"
-#include "core/search/box_tree.h"
+#include "core/periodic/near_points.h"
 
 #define NONE VG_PERIODIC_NONE
 /* S121: cosine of the angle of feature edges and of turns of a border. */
@@ -145,70 +145,16 @@ void vg_borders_release(struct vg_borders *b)
 
 /* --- partners ------------------------------------------------------------- */
 
-/* The points of a border, for searches. */
-struct finder {
-  const struct vg_mesh *m;
-  struct vg_box_tree tree;
-  uint32_t *point; /* [tree.n] */
-  /* of a search */
-  const double *x;
-  double d2;
-  uint32_t found;
-};
-
-static vg_status plant(struct finder *f, const struct vg_mesh *m,
+static vg_status plant(struct vg_near_points *border, const struct vg_mesh *m,
                        const uint32_t *next, struct vg_error *err)
 {
-  struct vg_box *box = vg_alloc(m->n_point, sizeof *box);
-  uint32_t n = 0;
-  vg_status st;
+  vg_status st = VG_OK;
 
-  f->m = m;
-  f->point = vg_alloc(m->n_point, sizeof *f->point);
-  if (!box || !f->point) VG_TRY(vg_fail_memory(err, "the periodic patches"));
-  for (uint32_t i = 0; i < m->n_point; i++) {
-    if (next[i] == NONE) continue;
-    box[n] = (struct vg_box)VG_BOX_EMPTY;
-    vg_box_add(&box[n], m->point[i]);
-    f->point[n++] = i;
-  }
-  VG_TRY(vg_box_tree_build_items(&f->tree, n, box, NULL, err));
+  for (uint32_t i = 0; i < m->n_point; i++)
+    if (next[i] != NONE) VG_TRY(vg_near_points_add(border, i, err));
+  st = vg_near_points_build(border, m, err);
 done:
-  free(box);
   return st;
-}
-
-static int is_near(void *context, size_t node, double d2)
-{
-  (void)node;
-  return d2 <= ((struct finder *)context)->d2;
-}
-
-/* Of equally near points the first one is taken. */
-static void take_near(void *context, size_t node)
-{
-  struct finder *f = context;
-  const struct vg_box_tree *t = &f->tree;
-
-  for (size_t i = vg_box_tree_first(t, node); i < vg_box_tree_end(t, node);
-       i++) {
-    const uint32_t point = f->point[t->item[i]];
-    const double d2 = vg_distance2(f->x, f->m->point[point]);
-
-    if (d2 > f->d2 || (d2 == f->d2 && point > f->found)) continue;
-    f->d2 = d2;
-    f->found = point;
-  }
-}
-
-/* The point of the border nearest to x; NONE if the border has none. */
-static uint32_t nearest(struct finder *f, const double x[3])
-{
-  f->x = x;
-  f->d2 = INFINITY;
-  f->found = NONE;
-  vg_box_tree_approach(&f->tree, x, is_near, take_near, f);
-  return f->found;
 }
 
 static vg_status no_partner(const struct vg_borders *b, int side, uint32_t i,
@@ -229,9 +175,9 @@ static vg_status no_partner(const struct vg_borders *b, int side, uint32_t i,
 }
 
 /* Pairs the corners of a side. */
-static vg_status pair_side(struct vg_borders *b, int side, struct finder *other,
-                           double tolerance, int is_strict,
-                           struct vg_error *err)
+static vg_status pair_side(struct vg_borders *b, int side,
+                           const struct vg_near_points *other, double tolerance,
+                           int is_strict, struct vg_error *err)
 {
   const struct vg_periodic back = vg_periodic_reverse(b->p);
   uint32_t *mine = side ? b->from : b->to, *its = side ? b->to : b->from;
@@ -240,7 +186,7 @@ static vg_status pair_side(struct vg_borders *b, int side, struct finder *other,
 
   for (uint32_t i = 0; i < b->m->n_point; i++) {
     uint32_t j;
-    double x[3];
+    double x[3], d2;
 
     if (b->next[side][i] == NONE || mine[i] != NONE) continue;
     if (b->next[!side][i] != NONE) {
@@ -249,12 +195,12 @@ static vg_status pair_side(struct vg_borders *b, int side, struct finder *other,
     }
     if (!b->corner[side][i]) continue;
     vg_periodic_image(side ? &back : b->p, b->m->point[i], x);
-    j = nearest(other, x);
-    if (j != NONE && other->d2 <= tolerance * tolerance && its[j] == NONE) {
+    j = vg_near_points_find(other, x, &d2);
+    if (j != NONE && d2 <= tolerance * tolerance && its[j] == NONE) {
       mine[i] = j;
       its[j] = i;
-    } else if (worst_at == NONE || other->d2 > worst) {
-      worst = other->d2;
+    } else if (worst_at == NONE || d2 > worst) {
+      worst = d2;
       worst_at = i;
     }
   }
@@ -265,7 +211,8 @@ static vg_status pair_side(struct vg_borders *b, int side, struct finder *other,
 
 /* The first point of each loop of the patch without a pair, and the nearest
  * point of the other border, become a pair. */
-static vg_status pair_loops(struct vg_borders *b, struct finder *other,
+static vg_status pair_loops(struct vg_borders *b,
+                            const struct vg_near_points *other,
                             struct vg_error *err)
 {
   uint8_t *seen = vg_calloc(b->m->n_point, 1);
@@ -274,7 +221,7 @@ static vg_status pair_loops(struct vg_borders *b, struct finder *other,
   for (uint32_t i = 0; i < b->m->n_point; i++) {
     uint32_t k = i;
     int has_pair = 0;
-    double x[3];
+    double x[3], d2;
 
     if (b->next[0][i] == NONE || seen[i]) continue;
     for (; k != NONE && !seen[k]; k = b->next[0][k]) {
@@ -283,7 +230,7 @@ static vg_status pair_loops(struct vg_borders *b, struct finder *other,
     }
     if (has_pair) continue;
     vg_periodic_image(b->p, b->m->point[i], x);
-    k = nearest(other, x);
+    k = vg_near_points_find(other, x, &d2);
     if (k == NONE || b->from[k] != NONE) continue;
     b->to[i] = k;
     b->from[k] = i;
@@ -295,8 +242,7 @@ static vg_status pair_loops(struct vg_borders *b, struct finder *other,
 vg_status vg_borders_pair(struct vg_borders *b, double tolerance, int is_strict,
                           struct vg_error *err)
 {
-  struct finder f[2] = { { .tree = VG_BOX_TREE_INIT },
-                         { .tree = VG_BOX_TREE_INIT } };
+  struct vg_near_points f[2] = { VG_NEAR_POINTS_INIT, VG_NEAR_POINTS_INIT };
   vg_status st = VG_OK;
 
   for (int side = 0; side < 2; side++)
@@ -305,10 +251,7 @@ vg_status vg_borders_pair(struct vg_borders *b, double tolerance, int is_strict,
     VG_TRY(pair_side(b, side, &f[!side], tolerance, is_strict, err));
   if (is_strict) VG_TRY(pair_loops(b, &f[1], err));
 done:
-  for (int side = 0; side < 2; side++) {
-    vg_box_tree_release(&f[side].tree);
-    free(f[side].point);
-  }
+  for (int side = 0; side < 2; side++) vg_near_points_release(&f[side]);
   return st;
 }
 

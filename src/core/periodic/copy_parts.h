@@ -51,14 +51,18 @@ vg_status vg_borders_divide(struct vg_borders *b, struct vg_border_pieces *out,
 
 void vg_borders_release(struct vg_borders *b);
 
+struct vg_strip_triangle {
+  uint32_t point[3], patch, origin;
+  uint32_t next[3]; /* next corner, 3 t + k, at the same point */
+  int is_gone;
+};
+
 /* A triangulation whose triangles are changed one by one. */
 struct vg_border_strip {
-  size_t n_point, n_tri, cap_point, cap_tri, cap_next;
+  size_t n_point, n_tri, cap_point, cap_tri, cap_head;
   double (*point)[3];
-  uint32_t (*tri)[3], *patch, *origin;
-  uint8_t *is_gone;
-  uint32_t *head; /* [n_point] first corner, 3 t + k, at each point */
-  uint32_t *next; /* [3 n_tri] next corner at the same point */
+  uint32_t *head; /* [n_point] first corner at each point */
+  struct vg_strip_triangle *tri;
 };
 
 /** Takes all triangles but those of the patch with index `without`. */

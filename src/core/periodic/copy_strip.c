@@ -17,28 +17,31 @@
 
 static void link(struct vg_border_strip *s, uint32_t t)
 {
+  struct vg_strip_triangle *tri = &s->tri[t];
+
   for (uint32_t k = 0; k < 3; k++) {
-    s->next[3 * t + k] = s->head[s->tri[t][k]];
-    s->head[s->tri[t][k]] = 3 * t + k;
+    tri->next[k] = s->head[tri->point[k]];
+    s->head[tri->point[k]] = 3 * t + k;
   }
 }
 
 static void unlink_triangle(struct vg_border_strip *s, uint32_t t)
 {
-  for (uint32_t k = 0; k < 3; k++) {
-    uint32_t *at = &s->head[s->tri[t][k]];
+  const struct vg_strip_triangle *tri = &s->tri[t];
 
-    while (*at != 3 * t + k) at = &s->next[*at];
-    *at = s->next[*at];
+  for (uint32_t k = 0; k < 3; k++) {
+    uint32_t *at = &s->head[tri->point[k]];
+
+    while (*at != 3 * t + k) at = &s->tri[*at / 3].next[*at % 3];
+    *at = tri->next[k];
   }
 }
 
 /* The triangle with the half-edge from u to v; NONE: no triangle has it. */
 static uint32_t find(const struct vg_border_strip *s, uint32_t u, uint32_t v)
 {
-  for (uint32_t c = s->head[u]; c != NONE; c = s->next[c])
-    if (s->tri[c / 3][(c + 1) % 3] == v && c % 3 != 2) return c / 3;
-    else if (c % 3 == 2 && s->tri[c / 3][0] == v) return c / 3;
+  for (uint32_t c = s->head[u]; c != NONE; c = s->tri[c / 3].next[c % 3])
+    if (s->tri[c / 3].point[(c + 1) % 3] == v) return c / 3;
   return NONE;
 }
 
@@ -50,33 +53,18 @@ static uint32_t third(const uint32_t t[3], uint32_t u, uint32_t v)
 }
 
 static vg_status add_triangle(struct vg_border_strip *s, const uint32_t v[3],
-                              uint32_t like, struct vg_error *err)
+                              uint32_t patch, uint32_t origin,
+                              struct vg_error *err)
 {
-  size_t cap = s->cap_tri;
-  const size_t n = s->n_tri + 1;
+  struct vg_strip_triangle *t;
 
-  if (n > cap) {
-    const size_t cap_new = n + n / 8 + 16;
-    void *tri = vg_realloc(s->tri, cap_new, sizeof *s->tri);
-    void *patch, *origin, *gone, *next;
-
-    if (tri) s->tri = tri;
-    patch = vg_realloc(s->patch, cap_new, sizeof *s->patch);
-    if (patch) s->patch = patch;
-    origin = vg_realloc(s->origin, cap_new, sizeof *s->origin);
-    if (origin) s->origin = origin;
-    gone = vg_realloc(s->is_gone, cap_new, 1);
-    if (gone) s->is_gone = gone;
-    next = vg_realloc(s->next, 3 * cap_new, sizeof *s->next);
-    if (next) s->next = next;
-    if (!tri || !patch || !origin || !gone || !next)
-      return vg_fail_memory(err, "the periodic patches");
-    s->cap_tri = cap_new;
-  }
-  memcpy(s->tri[s->n_tri], v, sizeof *s->tri);
-  s->patch[s->n_tri] = s->patch[like];
-  s->origin[s->n_tri] = s->origin[like];
-  s->is_gone[s->n_tri] = 0;
+  if (vg_reserve(&s->tri, &s->cap_tri, s->n_tri + 1, sizeof *s->tri) < 0)
+    return vg_fail_memory(err, "the periodic patches");
+  t = &s->tri[s->n_tri];
+  memcpy(t->point, v, sizeof t->point);
+  t->patch = patch;
+  t->origin = origin;
+  t->is_gone = 0;
   link(s, (uint32_t)s->n_tri++);
   return VG_OK;
 }
@@ -86,7 +74,7 @@ static vg_status add_point(struct vg_border_strip *s, const double x[3],
 {
   if (vg_reserve(&s->point, &s->cap_point, s->n_point + 1, sizeof *s->point) <
         0 ||
-      vg_reserve(&s->head, &s->cap_next, s->n_point + 1, sizeof *s->head) < 0)
+      vg_reserve(&s->head, &s->cap_head, s->n_point + 1, sizeof *s->head) < 0)
     return vg_fail_memory(err, "the periodic patches");
   memcpy(s->point[s->n_point], x, sizeof *s->point);
   s->head[s->n_point++] = NONE;
@@ -96,29 +84,16 @@ static vg_status add_point(struct vg_border_strip *s, const double x[3],
 vg_status vg_strip_start(struct vg_border_strip *s, const struct vg_mesh *m,
                          uint32_t without, struct vg_error *err)
 {
+  vg_status st = VG_OK;
+
   memset(s, 0, sizeof *s);
-  s->n_point = s->cap_point = s->cap_next = m->n_point;
-  s->cap_tri = m->n_tri;
-  s->point = vg_alloc(m->n_point, sizeof *s->point);
-  s->head = vg_alloc(m->n_point, sizeof *s->head);
-  s->tri = vg_alloc(m->n_tri, sizeof *s->tri);
-  s->patch = vg_alloc(m->n_tri, sizeof *s->patch);
-  s->origin = vg_alloc(m->n_tri, sizeof *s->origin);
-  s->is_gone = vg_calloc(m->n_tri, 1);
-  s->next = vg_alloc(3 * m->n_tri, sizeof *s->next);
-  if (!s->point || !s->head || !s->tri || !s->patch || !s->origin ||
-      !s->is_gone || !s->next)
-    return vg_fail_memory(err, "the periodic patches");
-  memcpy(s->point, m->point, m->n_point * sizeof *s->point);
-  for (size_t i = 0; i < m->n_point; i++) s->head[i] = NONE;
-  for (uint32_t t = 0; t < m->n_tri; t++) {
-    if (m->tri_patch[t] == without) continue;
-    memcpy(s->tri[s->n_tri], m->tri[t], sizeof *s->tri);
-    s->patch[s->n_tri] = m->tri_patch[t];
-    s->origin[s->n_tri] = t;
-    link(s, (uint32_t)s->n_tri++);
-  }
-  return VG_OK;
+  for (size_t i = 0; i < m->n_point; i++)
+    VG_TRY(add_point(s, m->point[i], err));
+  for (uint32_t t = 0; t < m->n_tri; t++)
+    if (m->tri_patch[t] != without)
+      VG_TRY(add_triangle(s, m->tri[t], m->tri_patch[t], t, err));
+done:
+  return st;
 }
 
 void vg_strip_release(struct vg_border_strip *s)
@@ -126,31 +101,31 @@ void vg_strip_release(struct vg_border_strip *s)
   free(s->point);
   free(s->head);
   free(s->tri);
-  free(s->patch);
-  free(s->origin);
-  free(s->is_gone);
-  free(s->next);
   memset(s, 0, sizeof *s);
 }
 
 /* --- insertion ------------------------------------------------------------ */
+
+/* Gives triangle t other points. */
+static void put(struct vg_border_strip *s, uint32_t t, const uint32_t v[3])
+{
+  unlink_triangle(s, t);
+  memcpy(s->tri[t].point, v, sizeof s->tri[t].point);
+  link(s, t);
+}
 
 vg_status vg_strip_insert(struct vg_border_strip *s, uint32_t u, uint32_t v,
                           const double x[3], struct vg_error *err)
 {
   const uint32_t t = find(s, u, v), p = (uint32_t)s->n_point;
   uint32_t o;
-  vg_status st;
+  vg_status st = add_point(s, x, err);
 
-  VG_TRY(add_point(s, x, err));
-  if (t == NONE) goto done;
-  o = third(s->tri[t], u, v);
-  unlink_triangle(s, t);
-  memcpy(s->tri[t], (uint32_t[3]){ u, p, o }, sizeof s->tri[t]);
-  link(s, t);
-  VG_TRY(add_triangle(s, (uint32_t[3]){ p, v, o }, t, err));
-done:
-  return st;
+  if (st < 0 || t == NONE) return st;
+  o = third(s->tri[t].point, u, v);
+  put(s, t, (uint32_t[3]){ u, p, o });
+  return add_triangle(s, (uint32_t[3]){ p, v, o }, s->tri[t].patch,
+                      s->tri[t].origin, err);
 }
 
 /* --- removal -------------------------------------------------------------- */
@@ -181,7 +156,7 @@ static int gather(const struct vg_border_strip *s, uint32_t l, uint32_t b,
     if (t == NONE || q->n_tri + 3 > MOST_RING) return 0;
     reversed[q->n_tri] = x;
     q->tri[q->n_tri++] = t;
-    x = third(s->tri[t], x, b);
+    x = third(s->tri[t].point, x, b);
   }
   q->point[q->n++] = l;
   q->point[q->n++] = r;
@@ -194,7 +169,7 @@ static void flatten(const struct vg_border_strip *s, struct ring *q)
   double n[3] = { 0 }, u[3], v[3], c[3], d[3];
 
   for (size_t k = 0; k < q->n_tri; k++) {
-    const uint32_t *t = s->tri[q->tri[k]];
+    const uint32_t *t = s->tri[q->tri[k]].point;
 
     vg_sub(s->point[t[1]], s->point[t[0]], u);
     vg_sub(s->point[t[2]], s->point[t[0]], v);
@@ -272,12 +247,9 @@ int vg_strip_remove(struct vg_border_strip *s, uint32_t l, uint32_t b,
   if (l == r || !gather(s, l, b, r, &q)) return 0;
   flatten(s, &q);
   if (!cut_ears(&q, out)) return 0;
-  for (size_t k = 0; k < q.n_tri; k++) unlink_triangle(s, q.tri[k]);
   /* There is one triangle less. */
-  for (size_t k = 0; k + 1 < q.n_tri; k++) {
-    memcpy(s->tri[q.tri[k]], out[k], sizeof *s->tri);
-    link(s, q.tri[k]);
-  }
-  s->is_gone[q.tri[q.n_tri - 1]] = 1;
+  for (size_t k = 0; k + 1 < q.n_tri; k++) put(s, q.tri[k], out[k]);
+  unlink_triangle(s, q.tri[q.n_tri - 1]);
+  s->tri[q.tri[q.n_tri - 1]].is_gone = 1;
   return s->head[b] == NONE;
 }

@@ -7,8 +7,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "core/periodic/periodic.h"
-#include "core/search/box_tree.h"
+#include "core/periodic/near_points.h"
 
 /* S101: share of the shortest edge at a point by which the point may move, so
  * that no triangle folds. */
@@ -20,10 +19,7 @@ struct work {
   double *edge;    /* [n_point] squared length of the shortest edge */
   uint8_t *in[2];  /* [n_point] the point is in the patch, in the image */
   uint8_t *is_hit; /* [n_point] the point is a partner */
-  uint32_t *item;  /* points of the image */
-  size_t n_item;
-  struct vg_box *box; /* [n_item] */
-  struct vg_box_tree tree;
+  struct vg_near_points image;
 };
 
 /* Nodes of face f, quadrilaterals after triangles; returns their number. */
@@ -79,82 +75,40 @@ static void mark(struct work *w, struct vg_periodic_match *out)
     for (int s = 0; s < 2; s++) out->n_point[s] += w->in[s][i];
 }
 
-static vg_status plant(struct work *w, size_t n, struct vg_error *err)
+static vg_status plant(struct work *w, struct vg_error *err)
 {
-  w->item = vg_alloc(n, sizeof *w->item);
-  w->box = vg_alloc(n, sizeof *w->box);
-  if (!w->item || !w->box) return vg_fail_memory(err, "the periodic patches");
-  for (uint32_t i = 0; i < w->m->n_point; i++) {
-    struct vg_box box = VG_BOX_EMPTY;
+  vg_status st = VG_OK;
 
-    if (!w->in[1][i]) continue;
-    vg_box_add(&box, w->m->point[i]);
-    w->box[w->n_item] = box;
-    w->item[w->n_item++] = i;
-  }
-  assert(w->n_item == n);
-  return vg_box_tree_build_items(&w->tree, n, w->box, NULL, err);
-}
-
-struct nearest {
-  const struct work *w;
-  const double *x;
-  double d2;
-  uint32_t point;
-};
-
-static int is_near(void *context, size_t node, double d2)
-{
-  (void)node;
-  return d2 <= ((struct nearest *)context)->d2;
-}
-
-/* Of equally near points the first one is taken. */
-static void take_near(void *context, size_t node)
-{
-  struct nearest *a = context;
-  const struct vg_box_tree *t = &a->w->tree;
-
-  for (size_t i = vg_box_tree_first(t, node); i < vg_box_tree_end(t, node);
-       i++) {
-    const uint32_t point = a->w->item[t->item[i]];
-    const double d2 = vg_distance2(a->x, a->w->m->point[point]);
-
-    if (d2 > a->d2 || (d2 == a->d2 && point > a->point)) continue;
-    a->d2 = d2;
-    a->point = point;
-  }
+  for (uint32_t i = 0; i < w->m->n_point; i++)
+    if (w->in[1][i]) VG_TRY(vg_near_points_add(&w->image, i, err));
+  st = vg_near_points_build(&w->image, w->m, err);
+done:
+  return st;
 }
 
 static void match_points(struct work *w, double tolerance,
                          struct vg_periodic_match *out)
 {
   for (uint32_t i = 0; i < w->m->n_point; i++) {
-    struct nearest a = { w, NULL, INFINITY, VG_PERIODIC_NONE };
-    double x[3], d;
+    double x[3], d2, d;
+    uint32_t point = i;
 
     out->point[i] = VG_PERIODIC_NONE;
     if (!w->in[0][i]) continue;
     vg_periodic_image(w->p, w->m->point[i], x);
-    a.x = x;
-    if (w->in[1][i]) {
-      a.point = i;
-      a.d2 = vg_distance2(x, w->m->point[i]);
-    } else {
-      vg_box_tree_approach(&w->tree, x, is_near, take_near, &a);
-    }
-    d = sqrt(a.d2);
+    if (w->in[1][i]) d2 = vg_distance2(x, w->m->point[i]);
+    else point = vg_near_points_find(&w->image, x, &d2);
+    d = sqrt(d2);
     if (out->worst == VG_PERIODIC_NONE || d > out->distance) {
       out->distance = d;
       out->worst = i;
     }
-    if (a.point == VG_PERIODIC_NONE || d > tolerance ||
-        a.d2 > EDGE_SHARE * EDGE_SHARE * w->edge[a.point] ||
-        w->is_hit[a.point]++) {
+    if (point == VG_PERIODIC_NONE || d > tolerance ||
+        d2 > EDGE_SHARE * EDGE_SHARE * w->edge[point] || w->is_hit[point]++) {
       out->n_off++;
       continue;
     }
-    out->point[i] = a.point;
+    out->point[i] = point;
   }
 }
 
@@ -237,7 +191,7 @@ vg_status vg_periodic_match(const struct vg_mesh *m,
                             const struct vg_periodic *p, double tolerance,
                             struct vg_periodic_match *out, struct vg_error *err)
 {
-  struct work w = { .m = m, .p = p, .tree = VG_BOX_TREE_INIT };
+  struct work w = { .m = m, .p = p, .image = VG_NEAR_POINTS_INIT };
   const size_t n = m->n_point;
   vg_status st = VG_OK;
 
@@ -253,15 +207,13 @@ vg_status vg_periodic_match(const struct vg_mesh *m,
   w.in[1] = w.in[0] + n;
   w.is_hit = w.in[1] + n;
   mark(&w, out);
-  VG_TRY(plant(&w, out->n_point[1], err));
+  VG_TRY(plant(&w, err));
   match_points(&w, tolerance, out);
   if (!out->n_off) st = match_faces(&w, out, err);
 done:
-  vg_box_tree_release(&w.tree);
+  vg_near_points_release(&w.image);
   free(w.edge);
   free(w.in[0]);
-  free(w.item);
-  free(w.box);
   if (st < 0) vg_periodic_match_release(out);
   return st;
 }

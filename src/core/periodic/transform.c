@@ -261,10 +261,8 @@ int vg_periodic_find(const struct vg_mesh *m, struct vg_periodic *p)
 
 /* --- rotations from points ------------------------------------------------ */
 
-#define SWEEPS 60 /* of Jacobi's method; a few are enough */
-#define ON_A_LINE                                                              \
-  1e-3 /* S120: width of the points, relative to their length                  \
-        */
+#define SWEEPS 60      /* of Jacobi's method; a few are enough */
+#define ON_A_LINE 1e-3 /* S120: width of the points over their length */
 
 /* One rotation of Jacobi's method, which makes a[i][j] zero. */
 static void rotate(double a[4][4], double v[4][4], int i, int j)

@@ -30,35 +30,50 @@
 #include "io/vgrid/vgrid.h"
 
 typedef vg_status (*reader)(const char *path, struct vg_mesh *out,
-                            struct vg_turned *turned, struct vg_error *err);
+                            struct vg_read_info *info, struct vg_error *err);
 typedef vg_status (*writer)(const char *path, const struct vg_mesh *m,
                             struct vg_error *err);
 
 #define PLAIN_READER(name)                                                     \
   static vg_status read_##name(const char *path, struct vg_mesh *out,          \
-                               struct vg_turned *turned, struct vg_error *err) \
+                               struct vg_read_info *info,                      \
+                               struct vg_error *err)                           \
   {                                                                            \
-    (void)turned;                                                              \
+    (void)info;                                                                \
     return vg_##name##_read(path, out, err);                                   \
   }
 PLAIN_READER(stl)
 PLAIN_READER(tri)
 PLAIN_READER(obj)
 PLAIN_READER(medit)
-PLAIN_READER(gmsh)
 PLAIN_READER(cgns)
 
-static vg_status read_surf(const char *path, struct vg_mesh *out,
-                           struct vg_turned *turned, struct vg_error *err)
+static vg_status read_gmsh(const char *path, struct vg_mesh *out,
+                           struct vg_read_info *info, struct vg_error *err)
 {
-  (void)turned;
+  vg_status st = vg_gmsh_read_volumes(path, out, info->zones, err);
+
+  info->has_volumes = info->zones && info->zones->n;
+  return st;
+}
+
+static vg_status read_surf(const char *path, struct vg_mesh *out,
+                           struct vg_read_info *info, struct vg_error *err)
+{
+  (void)info;
   return vg_aflr_surf_read(path, out, NULL, err);
 }
 
 static vg_status read_cogsg(const char *path, struct vg_mesh *out,
-                            struct vg_turned *turned, struct vg_error *err)
+                            struct vg_read_info *info, struct vg_error *err)
 {
-  return vg_cogsg_read(path, out, NULL, turned, err);
+  return vg_cogsg_read(path, out, NULL, &info->turned, err);
+}
+
+static vg_status read_ugrid(const char *path, struct vg_mesh *out,
+                            struct vg_read_info *info, struct vg_error *err)
+{
+  return vg_ugrid_read(path, out, &info->turned, err);
 }
 
 static char *adjacent(const char *path, const char *suffix)
@@ -83,13 +98,13 @@ static char *companion(const char *path, const char *suffix, const char *packed)
 }
 
 static vg_status read_front(const char *path, struct vg_mesh *out,
-                            struct vg_turned *turned, struct vg_error *err)
+                            struct vg_read_info *info, struct vg_error *err)
 {
   struct vg_project project = VG_PROJECT_INIT;
   char *d3m = companion(path, ".d3m", ".d3m.gz");
   vg_status st = VG_OK;
 
-  (void)turned;
+  (void)info;
   if (!d3m) return vg_fail_memory(err, "a file name");
   if (*d3m) VG_TRY(vg_d3m_read(d3m, &project, err));
   VG_TRY(vg_front_read(path, &project, out, err));
@@ -175,8 +190,7 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   ROW("igs", NULL, NULL, IGES, INPUT)                                          \
   ROW("brep", NULL, NULL, BREP, INPUT)                                         \
   ROW("egads", NULL, NULL, BREP, INPUT)
-#define UGRID(ROW, suffix)                                                     \
-  ROW(suffix, vg_ugrid_read, vg_ugrid_write, NONE, INPUT)
+#define UGRID(ROW, suffix) ROW(suffix, read_ugrid, vg_ugrid_write, NONE, INPUT)
 #define ALL(ROW) READ_AND_WRITTEN(ROW) WRITTEN(ROW) READ_ONLY(ROW)
 
 enum { INPUT = 1, TESSELLATION = 2, SHEETS = 4, ORDER = 8, ZONES = 16 };
@@ -296,7 +310,7 @@ vg_status vg_format_sheet_file(const char *path, char **out,
 {
   const struct format *f = find(path, without_gz(path));
 
-  if (!f || f->read != vg_ugrid_read) *out = strdup("");
+  if (!f || f->read != read_ugrid) *out = strdup("");
   else *out = companion(path, "." VG_SHEET_SUFFIX, "." VG_SHEET_SUFFIX ".gz");
   return *out ? VG_OK : vg_fail_memory(err, "a file name");
 }
@@ -304,18 +318,18 @@ vg_status vg_format_sheet_file(const char *path, char **out,
 int vg_format_holds_cells(const char *path)
 {
   const struct format *f = find(path, without_gz(path));
+  struct vg_read_info info = { 0 };
   struct vg_mesh m = VG_MESH_INIT;
   uint64_t count[7];
   int has = 0;
 
   if (!f || !f->read) return 0;
-  if (f->read == vg_ugrid_read) {
+  if (f->read == read_ugrid) {
     if (vg_ugrid_peek(path, count, NULL) == VG_OK)
       has = count[3] || count[4] || count[5] || count[6];
   } else if (f->read == read_medit || f->read == read_gmsh ||
              f->read == read_cgns) {
-    if (f->read(path, &m, NULL, NULL) == VG_OK)
-      has = m.n_tet || m.n_pyr || m.n_pri || m.n_hex;
+    if (f->read(path, &m, &info, NULL) == VG_OK) has = vg_mesh_n_cell(&m) > 0;
     vg_mesh_release(&m);
   } else {
     has = f->read == read_cogsg;
@@ -350,10 +364,8 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
   if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);
   st = kind ? vg_cad_read(path, kind, info->cad, info->model, out, &info->unit,
                           info->zones, err)
-     : f->read == read_gmsh ? vg_gmsh_read_volumes(path, out, info->zones, err)
-                            : f->read(path, out, &info->turned, err);
+            : f->read(path, out, info, err);
   if (st < 0) return st;
-  info->has_volumes = f->read == read_gmsh && info->zones && info->zones->n;
   info->format = f->suffix;
   info->n_cell = vg_mesh_n_cell(out);
   return VG_OK;
@@ -528,7 +540,7 @@ vg_status vg_format_layer_tets(const char *path, int *is_known, size_t *n,
 
   assert(is_known && n);
   *is_known = 0;
-  if (f && f->read == vg_ugrid_read)
+  if (f && f->read == read_ugrid)
     return vg_ugrid_layer_tets(path, is_known, n, err);
   if (f && f->read == read_cogsg)
     return vg_cogsg_layer_tets(path, is_known, n, err);

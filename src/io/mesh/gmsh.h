@@ -36,8 +36,7 @@ struct vg_cad_zones;
  * VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_MEMORY; VG_ERR_INPUT also: a surface bounds
  * more than two volumes, or no point is found in a volume; VG_ERR_UNSUPPORTED:
  * versions 1, 3 and 4.0, elements of higher order, partitioned meshes. Threads:
- * re-entrant. O(n), or O(n log n) if nodes are not numbered in order, and O(n)
- * more for each volume of a surface. */
+ * re-entrant. O(n), or O(n log n) if nodes are not numbered in order. */
 vg_status vg_gmsh_read_volumes(const char *path, struct vg_mesh *out,
                                struct vg_cad_zones *zones,
                                struct vg_error *err);

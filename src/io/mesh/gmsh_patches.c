@@ -100,8 +100,9 @@ vg_status vg_gmsh_set_zones(struct vg_mesh *m,
   return st;
 }
 
-int64_t vg_gmsh_physical(const struct vg_gmsh_group *group, size_t n,
-                         int64_t surface)
+/* The group of a surface or volume; NULL: none. */
+static const struct vg_gmsh_group *group_of(const struct vg_gmsh_group *group,
+                                            size_t n, int64_t surface)
 {
   size_t lo = 0, hi = n;
 
@@ -111,7 +112,15 @@ int64_t vg_gmsh_physical(const struct vg_gmsh_group *group, size_t n,
     if (group[mid].surface < surface) lo = mid + 1;
     else hi = mid;
   }
-  return lo < n && group[lo].surface == surface ? group[lo].physical : 0;
+  return lo < n && group[lo].surface == surface ? group + lo : NULL;
+}
+
+int64_t vg_gmsh_physical(const struct vg_gmsh_group *group, size_t n,
+                         int64_t surface)
+{
+  const struct vg_gmsh_group *of = group_of(group, n, surface);
+
+  return of ? of->physical : 0;
 }
 
 /* --- volumes of a surface mesh -------------------------------------------- */
@@ -122,8 +131,11 @@ int64_t vg_gmsh_physical(const struct vg_gmsh_group *group, size_t n,
 struct volumes {
   struct vg_mesh *m;
   struct vg_gmsh_group *const *face; /* of triangles, of quadrilaterals */
-  size_t n_side;
-  const struct vg_gmsh_side *side; /* sorted by surface */
+  size_t n_side, n_group;
+  const struct vg_gmsh_side *side;   /* sorted by surface */
+  const struct vg_gmsh_group *group; /* [n_group] the volumes, sorted */
+  size_t *first; /* [n_group + 1] owned: faces of each volume in of[] */
+  size_t *of;    /* owned */
 };
 
 static int by_side(const void *a, const void *b)
@@ -310,35 +322,58 @@ static void name_zone(const struct vg_gmsh_group *volume, size_t n_name,
              (long long)volume->surface);
 }
 
-/* Adds the zone of a volume. face: space for numbers of faces. */
-static vg_status add_zone(const struct volumes *v,
-                          const struct vg_gmsh_group *volume, size_t n_name,
-                          const struct vg_gmsh_name *name, size_t *face,
-                          const char *path, struct vg_cad_zones *zones,
-                          struct vg_error *err)
+/* Counts the faces of volume g in first[g + 2] or, once of[] is there, puts
+ * them into it from first[g + 1] on, which ends where those of volume g + 1
+ * begin. */
+static void visit_faces(struct volumes *v)
 {
-  const size_t n_face = v->m->n_tri + v->m->n_quad;
+  for (size_t f = 0; f < v->m->n_tri + v->m->n_quad; f++) {
+    size_t n;
+    const struct vg_gmsh_side *s = sides_of(v, surface_of(v, f), &n);
+
+    for (size_t k = 0; k < n; k++) {
+      const struct vg_gmsh_group *g = group_of(v->group, v->n_group,
+                                               s[k].volume);
+
+      assert(g);
+      if (v->of) v->of[v->first[g - v->group + 1]++] = f;
+      else v->first[g - v->group + 2]++;
+    }
+  }
+}
+
+/* The faces of each volume. */
+static vg_status list_faces(struct volumes *v, struct vg_error *err)
+{
+  v->first = vg_calloc(v->n_group + 2, sizeof *v->first);
+  if (!v->first) return vg_fail_memory(err, "the zones");
+  visit_faces(v);
+  for (size_t g = 2; g < v->n_group + 2; g++) v->first[g] += v->first[g - 1];
+  v->of = vg_alloc(v->first[v->n_group + 1], sizeof *v->of);
+  if (!v->of) return vg_fail_memory(err, "the zones");
+  visit_faces(v);
+  return VG_OK;
+}
+
+/* Adds the zone of volume g. */
+static vg_status add_zone(const struct volumes *v, size_t g, size_t n_name,
+                          const struct vg_gmsh_name *name, const char *path,
+                          struct vg_cad_zones *zones, struct vg_error *err)
+{
+  const size_t *face = v->of + v->first[g];
+  const size_t n = v->first[g + 1] - v->first[g], step = n / CANDIDATES + 1;
   struct vg_cad_zone z = { .kind = VG_ZONE_FLUID };
-  size_t n = 0, step;
   int has_seed = 0;
 
-  for (size_t f = 0; f < n_face; f++) {
-    size_t n_side;
-    const struct vg_gmsh_side *s = sides_of(v, surface_of(v, f), &n_side);
-
-    for (size_t k = 0; k < n_side; k++)
-      if (s[k].volume == volume->surface) face[n++] = f;
-  }
   if (!n) return VG_OK; /* its surfaces were not saved */
-  step = n / CANDIDATES + 1;
   for (size_t i = 0; i < n && !has_seed; i += step)
     has_seed = find_seed(v->m, n, face, i, z.seed);
   if (!has_seed)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the surfaces of volume %lld are not closed, so that no "
                    "point in it is found; save all of them (Mesh.SaveAll = 1)",
-                   path, (long long)volume->surface);
-  name_zone(volume, n_name, name, zones, z.name);
+                   path, (long long)v->group[g].surface);
+  name_zone(&v->group[g], n_name, name, zones, z.name);
   zones->of[zones->n++] = z;
   return VG_OK;
 }
@@ -351,8 +386,12 @@ vg_status vg_gmsh_set_volumes(struct vg_mesh *m,
                               const char *path, struct vg_cad_zones *zones,
                               struct vg_error *err)
 {
-  struct volumes v = { .m = m, .face = face, .n_side = n_side, .side = side };
-  size_t *list = NULL;
+  struct volumes v = { .m = m,
+                       .face = face,
+                       .n_side = n_side,
+                       .n_group = n_group,
+                       .side = side,
+                       .group = group };
   int any = 0;
   vg_status st = VG_OK;
 
@@ -367,12 +406,13 @@ vg_status vg_gmsh_set_volumes(struct vg_mesh *m,
                      path, (long long)side[i].surface);
   VG_TRY(set_interfaces(&v, &any, err));
   if (!any) goto done;
-  list = vg_alloc(2 * (m->n_tri + m->n_quad), sizeof *list);
+  VG_TRY(list_faces(&v, err));
   zones->of = vg_calloc(n_group, sizeof *zones->of);
-  if (!list || !zones->of) VG_TRY(vg_fail_memory(err, "the zones"));
-  for (size_t i = 0; i < n_group; i++)
-    VG_TRY(add_zone(&v, &group[i], n_name, name, list, path, zones, err));
+  if (!zones->of) VG_TRY(vg_fail_memory(err, "the zones"));
+  for (size_t g = 0; g < n_group; g++)
+    VG_TRY(add_zone(&v, g, n_name, name, path, zones, err));
 done:
-  free(list);
+  free(v.first);
+  free(v.of);
   return st;
 }

@@ -186,15 +186,16 @@ static vg_status read_sides(struct reader *r, int64_t volume, int64_t n,
                             struct vg_error *err)
 {
   vg_status st = check_count(r, n, 0, 1, "a volume", err);
-  int64_t v;
 
-  if (st < 0) return st;
-  if (vg_reserve(&r->side, &r->cap_side, r->n_side + (size_t)n,
-                 sizeof *r->side))
+  if (st >= 0 && vg_reserve(&r->side, &r->cap_side, r->n_side + (size_t)n,
+                            sizeof *r->side) < 0)
     return vg_fail_memory(err, "the volumes");
-  for (; n > 0 && st == VG_OK; n--) {
+  for (; n > 0 && st >= 0; n--) {
+    int64_t v = 0;
+
     st = read_ints(r, 1, &v, "a volume", err);
-    r->side[r->n_side++] = (struct vg_gmsh_side){ llabs(v), volume };
+    if (v < 0 && v > INT64_MIN) v = -v; /* its orientation */
+    r->side[r->n_side++] = (struct vg_gmsh_side){ v, volume };
   }
   return st;
 }

@@ -32,7 +32,7 @@ struct vg_layer_request {
                    earlier. */
 };
 
-#define VG_FANS_SHARP (-1.0)
+#define VG_FANS_SHARP (-1.0) /* a value of vg_layer_options.fan_angle */
 
 struct vg_layer_options {
   const struct vg_layer_request *patch; /* [surface->n_patch] requested

@@ -324,8 +324,8 @@ static vg_status check_reach(const struct vg_boundary *b, const double lo[3],
 }
 
 /* The box around the domain with the generated farfield, which is made coarsely
- * for that. has: out: 0: the domain has no generated farfield, or it
- * cannot be made. */
+ * for that. has: out: 0: the domain has no generated farfield, or it cannot be
+ * made. */
 static vg_status farfield_box(const struct vg_boundary *b, int *has,
                               double lo[3], double hi[3], struct vg_error *err)
 {
